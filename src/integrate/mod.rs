@@ -1,0 +1,1 @@
+//! The volume rendering integral along each ray of a picture.

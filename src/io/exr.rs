@@ -1,0 +1,1 @@
+//! OpenEXR pictures, linear f32, premultiplied alpha.

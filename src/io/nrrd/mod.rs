@@ -1,0 +1,1 @@
+//! NRRD: the whole format, read and written (teem.sourceforge.net/nrrd/format.html).

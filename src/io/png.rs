@@ -1,0 +1,1 @@
+//! PNG pictures, sRGB, 8 or 16 bits, straight alpha.

@@ -1,0 +1,1 @@
+//! Mathematics without a domain: polynomials, stable exponentials, counter-based hashes.

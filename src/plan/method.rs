@@ -1,0 +1,105 @@
+//! How the volume rendering integral is computed: settings of the integrators, all resolved.
+
+/// An integrator with its settings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// Within a tolerance, without a step size.
+    Exact(Exact),
+    /// Fixed steps, as the textbooks and VTK do it.
+    March(March),
+    /// The oracle, for every pixel: slow.
+    Reference,
+}
+
+/// Settings of the exact integrator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exact {
+    /// Largest error of a channel of a pixel (linear, premultiplied), above 0.
+    pub tolerance: f64,
+}
+
+/// Settings of the marching integrator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct March {
+    /// Distance between samples, mm, above 0.
+    pub step_mm: f64,
+    /// Where in an interval its sample lies.
+    pub rule: SampleRule,
+    /// Direction of compositing.
+    pub order: Order,
+    /// What is averaged and stored per sample.
+    pub colors: Colors,
+    /// What a sample's emission is measured by.
+    pub emission: Emission,
+    /// Where the intervals of neighbouring rays lie.
+    pub lattice: Lattice,
+    /// Offset of the lattice per pixel; `None` for the same on all rays.
+    pub jitter: Option<Jitter>,
+    /// A front-to-back ray stops where less than this transmittance is left; 0 never.
+    pub termination_transmittance: f64,
+}
+
+/// Where in an interval its sample lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SampleRule {
+    /// At its start: first order.
+    Left,
+    /// In its middle: second order.
+    Midpoint,
+    /// At both ends, averaged: second order.
+    Trapezoid,
+}
+
+/// Direction of compositing; the results differ by rounding only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// From the eye, with early termination.
+    FrontToBack,
+    /// Towards the eye, by the *over* operator.
+    BackToFront,
+}
+
+/// Colour as it is composited; the results differ by rounding only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Colors {
+    /// Multiplied by opacity.
+    Associated,
+    /// Divided out and multiplied in again by the compositor.
+    Straight,
+}
+
+/// What a sample's emission is measured by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Emission {
+    /// By length: `(1 − e^{−σΔ}) q/σ`, or `qΔ` where nothing absorbs; independent of the step.
+    PerLength,
+    /// By sample: `q · 1 mm` once per sample whatever the step, as renderers without colour correction do.
+    PerSample,
+}
+
+/// Where the intervals of neighbouring rays lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lattice {
+    /// From each ray's own entry into the volume.
+    PerRay,
+    /// On planes across the line of sight, as with slices for proxy geometry; the first and last interval are partial.
+    ViewPlanes,
+}
+
+/// Offset of the sample lattice per pixel, by a counter-based hash of (seed, pixel): the same for any thread count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Jitter {
+    /// Seed.
+    pub seed: u64,
+    /// Distribution over the picture.
+    pub kind: JitterKind,
+}
+
+/// Distribution of the offsets over the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JitterKind {
+    /// Independent per pixel.
+    White,
+    /// Spread evenly over neighbouring pixels.
+    LowDiscrepancy,
+}

@@ -1,0 +1,37 @@
+//! The scene: what is pictured, from where and in what light, resolved and exact in f64.
+//!
+//! A [`Scene`] is shared by every integrator and by the oracle: it holds definitions, never an approximation.
+//!
+//! **Light.** Along a ray with parameter `s` in mm, `dI/ds = q − σ I`, so that
+//! `I = I₀ T(D) + ∫ q(s) exp(−∫₀^s σ) ds` with `T(D) = exp(−∫₀^D σ)` (Max 1995). `σ` and `q` come from the
+//! [transfer function](crate::transfer); shading multiplies `q`. Colour is linear and premultiplied.
+
+mod camera;
+mod shading;
+
+pub use camera::{Camera, Projection, Ray};
+pub use shading::{Light, Shading};
+
+use crate::transfer::TransferFunction;
+
+/// What is pictured: resolved definitions, no options left open.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// What absorbs and emits.
+    pub transfer_function: TransferFunction,
+    /// Shading by the gradient; `None` renders emission and absorption alone, and no gradient is read for it.
+    pub shading: Option<Shading>,
+    /// From where.
+    pub camera: Camera,
+    /// Light behind the volume.
+    pub background: Background,
+}
+
+/// The light behind the volume.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Background {
+    /// Nothing: the picture keeps its alpha.
+    Transparent,
+    /// An even colour, linear RGB; the picture is opaque.
+    Color([f64; 3]),
+}

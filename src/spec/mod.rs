@@ -1,0 +1,1 @@
+//! What may be written in YAML: pipelines and presets, with their places for error messages.

@@ -1,0 +1,1 @@
+//! Volumes made by formula: the CT head phantom.

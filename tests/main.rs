@@ -1,0 +1,17 @@
+//! One test binary; see README.md in this folder.
+
+mod analytic;
+mod cli;
+mod dicom;
+mod exact;
+mod hard_cases;
+mod image;
+mod layering;
+mod march;
+mod nrrd;
+mod oracle;
+mod phantom;
+mod plan;
+mod properties;
+mod spec;
+mod support;
