@@ -22,7 +22,7 @@ impl Grid {
             return Err(Error::new(Fault::Geometry, "the volume has an axis of no voxels")
                 .found(format!("{} x {} x {}", dims[0], dims[1], dims[2])));
         }
-        let matrix = DMat3::from(index_to_lps_mm.matrix3);
+        let matrix = index_to_lps_mm.matrix3;
         let volume_of_axes = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
         // Relative to the axes' lengths, so that spacings of nanometres and of metres are judged alike.
         let flatness = matrix.determinant().abs() / volume_of_axes;
@@ -64,14 +64,14 @@ impl Grid {
 
     /// Length in mm of one step along i, j and k.
     pub fn spacing_mm(&self) -> DVec3 {
-        let m = DMat3::from(self.index_to_lps_mm.matrix3);
+        let m = self.index_to_lps_mm.matrix3;
         DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length())
     }
 
     /// The map of a gradient per index step to a gradient per mm: the inverse transpose of the affine's matrix, so that
     /// the gradient stays a covector under rotation, anisotropic spacing, shear and reflection.
     pub fn gradient_to_per_mm(&self) -> DMat3 {
-        DMat3::from(self.lps_mm_to_index.matrix3).transpose()
+        self.lps_mm_to_index.matrix3.transpose()
     }
 
     /// Linear index of a voxel.
