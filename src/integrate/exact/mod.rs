@@ -13,6 +13,7 @@ mod piece;
 mod ray;
 mod shade;
 mod splits;
+mod values;
 
 use std::fmt;
 
