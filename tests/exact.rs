@@ -67,7 +67,8 @@ fn explore() {
             let run = |tolerance: f64, precision| {
                 let t = tracer(&volume, &scene, tolerance, precision);
                 let start = Instant::now();
-                let all: Vec<_> = (0..64 * 64).map(|i| t.trace(&scene.camera.pixel_ray(i % 64, i / 64))).collect();
+                let all: Vec<_> =
+                    (0..64 * 64).filter_map(|i| t.trace(&scene.camera.pixel_ray(i % 64, i / 64))).collect();
                 (all, start.elapsed(), t.kernel().to_string())
             };
             let (truth, time, _) = run(if scene.shading.is_some() { 1e-5 } else { 1e-9 }, Precision::Double);

@@ -3,87 +3,69 @@
 //! All crossings are computed from the ray's entry into the volume, in f64, and never accumulated, so that no error grows
 //! along the ray; inside a cell coordinates are in `[0, 1]`, and f32 is enough.
 
-use glam::DVec3;
-
+use super::super::chord::Chord;
 use crate::scene::Ray;
 use crate::volume::Grid;
 
-/// A ray inside a volume, in index space.
+/// A ray inside a volume.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct IndexRay {
-    /// Continuous index at `enter_mm`.
-    entry: DVec3,
-    /// Index per mm.
-    direction: DVec3,
-    /// Where the ray enters the domain, mm from its origin; at least 0.
-    pub(crate) enter_mm: f64,
-    /// Where it leaves.
-    pub(crate) exit_mm: f64,
+pub(super) struct IndexRay {
+    chord: Chord,
 }
 
 /// The part of a ray inside one cell.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Segment {
+pub(super) struct Segment {
     /// Lower corner, voxel index.
-    pub(crate) cell: [usize; 3],
+    pub(super) cell: [usize; 3],
     /// Entry, in `[0, 1]³` of the cell.
-    pub(crate) from: [f64; 3],
+    pub(super) from: [f64; 3],
     /// Exit, in `[0, 1]³` of the cell.
-    pub(crate) to: [f64; 3],
+    pub(super) to: [f64; 3],
     /// Length, mm.
-    pub(crate) length_mm: f64,
+    pub(super) length_mm: f64,
     /// Distance of the exit from the ray's origin, mm.
-    pub(crate) exit_mm: f64,
+    pub(super) exit_mm: f64,
 }
 
 impl IndexRay {
     /// The part of a ray inside the domain of a grid, or `None` if it misses it.
-    pub(crate) fn clip(ray: &Ray, grid: &Grid) -> Option<Self> {
-        let to_index = grid.lps_mm_to_index();
-        let origin = to_index.transform_point3(ray.origin_mm);
-        let direction = to_index.transform_vector3(ray.direction);
+    pub(super) fn clip(ray: &Ray, grid: &Grid) -> Option<Self> {
+        let mut chord = Chord::new(grid, *ray)?;
         let (low, high) = grid.index_bounds();
-        let (mut enter_mm, mut exit_mm) = (0.0, f64::INFINITY);
-        for axis in 0..3 {
-            let (o, d) = (origin[axis], direction[axis]);
-            if d == 0.0 {
-                // Parallel to these faces: inside for good, or never. No 0 · ∞.
-                if o < low[axis] || o > high[axis] {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = ((low[axis] - o) / d, (high[axis] - o) / d);
-            enter_mm = f64::max(enter_mm, a.min(b));
-            exit_mm = f64::min(exit_mm, a.max(b));
-        }
-        // A comparison with NaN is false, so that NaN counts as a miss.
-        let meets = exit_mm > enter_mm && exit_mm.is_finite();
-        if !meets {
-            return None;
-        }
-        let entry = (origin + enter_mm * direction).clamp(low, high);
-        Some(IndexRay { entry, direction, enter_mm, exit_mm })
+        chord.entry_index = chord.entry_index.clamp(low, high);
+        Some(IndexRay { chord })
+    }
+
+    /// Where it enters the domain, mm from its origin.
+    pub(super) fn enter_mm(&self) -> f64 {
+        self.chord.entry_mm
+    }
+
+    /// Where it leaves.
+    pub(super) fn exit_mm(&self) -> f64 {
+        self.chord.entry_mm + self.chord.length_mm
     }
 
     /// Length inside the domain, mm.
-    pub(crate) fn length_mm(&self) -> f64 {
-        self.exit_mm - self.enter_mm
+    pub(super) fn length_mm(&self) -> f64 {
+        self.chord.length_mm
     }
 
     /// The cells of the ray, front to back; without gaps or overlaps, none of length 0.
-    pub(crate) fn segments(self, grid: &Grid) -> Segments {
+    pub(super) fn segments(self, grid: &Grid) -> Segments {
         let dims = grid.dims();
         let last_cell = dims.map(|n| n.saturating_sub(2));
         let mut cell = [0; 3];
         let mut next_mm = [f64::INFINITY; 3];
         for axis in 0..3 {
-            let p = self.entry[axis];
+            let p = self.chord.entry_index[axis];
             // On a face, the cell that the ray is about to pass.
-            let index = if self.direction[axis] < 0.0 { p.ceil() - 1.0 } else { p.floor() };
+            let index = if self.chord.index_per_mm[axis] < 0.0 { p.ceil() - 1.0 } else { p.floor() };
             cell[axis] = index.clamp(0.0, last_cell[axis] as f64) as usize;
         }
-        let mut segments = Segments { ray: self, last_cell, dims, cell, next_mm, at_mm: self.enter_mm };
+        let mut segments =
+            Segments { ray: self, last_cell, dims, cell, next_mm, at_mm: self.enter_mm(), exit_mm: self.exit_mm() };
         for (axis, next) in next_mm.iter_mut().enumerate() {
             *next = segments.crossing_mm(axis);
         }
@@ -94,7 +76,7 @@ impl IndexRay {
 
 /// Iterator over the [`Segment`]s of a ray.
 #[derive(Debug, Clone)]
-pub(crate) struct Segments {
+pub(super) struct Segments {
     ray: IndexRay,
     last_cell: [usize; 3],
     dims: [usize; 3],
@@ -102,22 +84,23 @@ pub(crate) struct Segments {
     /// Where the ray crosses the next face across each axis, mm from its origin.
     next_mm: [f64; 3],
     at_mm: f64,
+    exit_mm: f64,
 }
 
 impl Segments {
     fn crossing_mm(&self, axis: usize) -> f64 {
-        let d = self.ray.direction[axis];
+        let d = self.ray.chord.index_per_mm[axis];
         let c = self.cell[axis];
         let leaves_domain = if d < 0.0 { c == 0 } else { c >= self.last_cell[axis] };
         if d == 0.0 || leaves_domain || self.dims[axis] == 1 {
             return f64::INFINITY;
         }
         let face = (if d < 0.0 { c } else { c + 1 }) as f64;
-        self.ray.enter_mm + (face - self.ray.entry[axis]) / d
+        self.ray.enter_mm() + (face - self.ray.chord.entry_index[axis]) / d
     }
 
     fn local(&self, mm: f64) -> [f64; 3] {
-        let p = self.ray.entry + (mm - self.ray.enter_mm) * self.ray.direction;
+        let p = self.ray.chord.index_at(mm - self.ray.enter_mm());
         std::array::from_fn(|axis| (p[axis] - self.cell[axis] as f64).clamp(0.0, 1.0))
     }
 }
@@ -127,7 +110,7 @@ impl Iterator for Segments {
 
     #[inline]
     fn next(&mut self) -> Option<Segment> {
-        while self.at_mm < self.ray.exit_mm {
+        while self.at_mm < self.exit_mm {
             let [a, b, c] = self.next_mm;
             let axis = if a <= b && a <= c {
                 0
@@ -136,7 +119,7 @@ impl Iterator for Segments {
             } else {
                 2
             };
-            let exit_mm = self.next_mm[axis].min(self.ray.exit_mm);
+            let exit_mm = self.next_mm[axis].min(self.exit_mm);
             let segment = (exit_mm > self.at_mm).then(|| Segment {
                 cell: self.cell,
                 from: self.local(self.at_mm),
@@ -145,8 +128,8 @@ impl Iterator for Segments {
                 exit_mm,
             });
             self.at_mm = exit_mm.max(self.at_mm);
-            if self.next_mm[axis] < self.ray.exit_mm {
-                if self.ray.direction[axis] < 0.0 {
+            if self.next_mm[axis] < self.exit_mm {
+                if self.ray.chord.index_per_mm[axis] < 0.0 {
                     self.cell[axis] -= 1;
                 } else {
                     self.cell[axis] += 1;
@@ -164,6 +147,7 @@ impl Iterator for Segments {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     fn walk(origin: DVec3, direction: DVec3, dims: [usize; 3]) -> Vec<Segment> {
         let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();

@@ -2,35 +2,16 @@
 
 use glam::DMat3;
 
+use crate::field::Voxel;
 use crate::math::Real;
 use crate::math::bernstein::{Cubic, trilinear_along};
 use crate::volume::{Rescale, Volume};
 
 use super::cells::Segment;
 
-/// A stored sample that fits into f32 exactly.
-pub(crate) trait Stored: Copy + Sync {
-    /// As a real number.
-    fn real<R: Real>(self) -> R;
-}
-
-impl Stored for i16 {
-    #[inline(always)]
-    fn real<R: Real>(self) -> R {
-        R::from_f32(f32::from(self))
-    }
-}
-
-impl Stored for f32 {
-    #[inline(always)]
-    fn real<R: Real>(self) -> R {
-        R::from_f32(self)
-    }
-}
-
 /// Stored samples by voxel index, with what a gradient in HU/mm needs.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Lattice<'a, V> {
+pub(super) struct Lattice<'a, V> {
     samples: &'a [V],
     dims: [usize; 3],
     /// Step in `samples` from a voxel to its upper neighbour in a cell; 0 along an axis of one voxel.
@@ -38,8 +19,8 @@ pub(crate) struct Lattice<'a, V> {
     to_value_per_mm: DMat3,
 }
 
-impl<'a, V: Stored> Lattice<'a, V> {
-    pub(crate) fn new(volume: &Volume, samples: &'a [V]) -> Self {
+impl<'a, V: Voxel> Lattice<'a, V> {
+    pub(super) fn new(volume: &Volume, samples: &'a [V]) -> Self {
         let Rescale { slope, .. } = volume.rescale();
         let dims = volume.grid().dims();
         let [nx, ny, _] = dims;
@@ -50,11 +31,11 @@ impl<'a, V: Stored> Lattice<'a, V> {
 
     /// Stored samples at the corners of a cell, x fastest.
     #[inline(always)]
-    pub(crate) fn corners<R: Real>(&self, [i, j, k]: [usize; 3]) -> [R; 8] {
+    pub(super) fn corners<R: Real>(&self, [i, j, k]: [usize; 3]) -> [R; 8] {
         let [nx, ny, _] = self.dims;
         let base = i + nx * (j + ny * k);
         let [sx, sy, sz] = self.steps;
-        std::array::from_fn(|c| self.samples[base + (c & 1) * sx + (c >> 1 & 1) * sy + (c >> 2) * sz].real())
+        std::array::from_fn(|c| real(self.samples[base + (c & 1) * sx + (c >> 1 & 1) * sy + (c >> 2) * sz]))
     }
 
     /// Difference per index step along an axis at a voxel: central, one-sided at the border, 0 along an axis of one voxel.
@@ -69,13 +50,13 @@ impl<'a, V: Stored> Lattice<'a, V> {
         let step = self.steps[axis];
         let i = voxel[axis];
         let (low, high) = (if i > 0 { at - step } else { at }, if i + 1 < n { at + step } else { at });
-        let difference = self.samples[high].real::<R>() - self.samples[low].real::<R>();
+        let difference = real::<R, V>(self.samples[high]) - real(self.samples[low]);
         if i > 0 && i + 1 < n { R::from_f64(0.5) * difference } else { difference }
     }
 
     /// Gradients in HU/mm at the corners of a cell: three components of eight corners.
     #[inline]
-    pub(crate) fn gradients<R: Real>(&self, cell: [usize; 3]) -> [[R; 8]; 3] {
+    pub(super) fn gradients<R: Real>(&self, cell: [usize; 3]) -> [[R; 8]; 3] {
         let m = self.to_value_per_mm.to_cols_array_2d();
         let mut result = [[R::ZERO; 8]; 3];
         for c in 0..8 {
@@ -101,4 +82,9 @@ pub(super) fn magnitudes<R: Real>(gradients: &[[R; 8]; 3]) -> [R; 8] {
 #[inline(always)]
 pub(super) fn along<R: Real>(corners: &[R; 8], segment: &Segment) -> Cubic<R> {
     trilinear_along(corners, segment.from.map(R::from_f64), segment.to.map(R::from_f64))
+}
+
+#[inline(always)]
+fn real<R: Real, V: Voxel>(stored: V) -> R {
+    R::from_f32(stored.to_f32())
 }

@@ -1,5 +1,6 @@
 //! One ray, cell by cell and piece by piece, within its budget.
 
+use crate::field::Voxel;
 use crate::math::Real;
 use crate::scene::{Ray, Scene};
 use crate::transfer::Side;
@@ -7,7 +8,7 @@ use crate::volume::Grid;
 
 use super::budget::Budget;
 use super::cells::IndexRay;
-use super::lattice::{Lattice, Stored, along};
+use super::lattice::{Lattice, along};
 use super::medium::Medium;
 use super::shade::Shader;
 use super::splits::Splits;
@@ -85,17 +86,15 @@ impl Brightest {
     }
 }
 
-impl<V: Stored, M> Frame<'_, V, M> {
+impl<V: Voxel, M> Frame<'_, V, M> {
     /// Traces one ray.
-    pub(super) fn trace<R: Real, S: Shader<R>>(&self, ray: &Ray, shader: &S, splits: &mut Splits<R>) -> Traced
+    pub(super) fn trace<R: Real, S: Shader<R>>(&self, ray: &Ray, shader: &S, splits: &mut Splits<R>) -> Option<Traced>
     where
         M: Medium<R>,
     {
+        let inside = IndexRay::clip(ray, self.grid)?;
         let mut light =
             Front { radiance: [0.0; 3], transmittance: 1.0, budget: Budget::new(self.tolerance), pieces: 0 };
-        let Some(inside) = IndexRay::clip(ray, self.grid) else {
-            return light.ended(0.0);
-        };
         for segment in inside.segments(self.grid) {
             let stored = self.lattice.corners(segment.cell);
             let Some(fields) = self.medium.fields(&stored, &segment, || self.lattice.gradients(segment.cell)) else {
@@ -113,15 +112,15 @@ impl<V: Stored, M> Frame<'_, V, M> {
                     let length_mm = R::from_f64(segment.length_mm) * (part[1] - part[0]);
                     let integral = self.medium.integrate(&fields, part, length_mm, shader, &shading)?;
                     let at_mm = front_mm + part[1].to_f64() * segment.length_mm;
-                    Some((integral, (at_mm - inside.enter_mm) / inside.length_mm()))
+                    Some((integral, (at_mm - inside.enter_mm()) / inside.length_mm()))
                 });
             }
-            let rest = self.brightest.of_rest(light.transmittance, inside.exit_mm - segment.exit_mm);
+            let rest = self.brightest.of_rest(light.transmittance, inside.exit_mm() - segment.exit_mm);
             if light.budget.may_end(rest) {
-                return light.ended(rest);
+                return Some(light.ended(rest));
             }
         }
-        light.ended(0.0)
+        Some(light.ended(0.0))
     }
 }
 

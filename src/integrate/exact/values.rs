@@ -1,16 +1,17 @@
 //! What the values along a ray say without a transfer function: extremes, mean, and where they cross a level. All from the
 //! exact cubics, in f64, so there is nothing to bound but rounding.
 
+use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, critical_points, crossing, range, sum, value};
 use crate::scene::Ray;
 use crate::volume::Grid;
 
 use super::cells::{IndexRay, Segment};
-use super::lattice::{Lattice, Stored, along};
+use super::lattice::{Lattice, along};
 
 /// Which extreme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Extreme {
+pub(super) enum Extreme {
     Largest,
     Smallest,
 }
@@ -18,7 +19,7 @@ pub(crate) enum Extreme {
 /// The extreme stored value along a ray, or `None` if it misses the volume. A cubic takes its extremes at its ends and
 /// critical points, and lies between its Bernstein coefficients and between its cell's corners, so most cells cost one
 /// comparison of their corners.
-pub(crate) fn extreme<V: Stored>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray, which: Extreme) -> Option<f64> {
+pub(super) fn extreme<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray, which: Extreme) -> Option<f64> {
     // The smallest value is minus the largest of the negated field.
     let sign = match which {
         Extreme::Largest => 1.0,
@@ -43,7 +44,7 @@ pub(crate) fn extreme<V: Stored>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ra
 
 /// Mean stored value along a ray and its length in the volume in mm, or `None` if it misses the volume. The mean of a
 /// polynomial is the mean of its Bernstein coefficients.
-pub(crate) fn mean<V: Stored>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray) -> Option<(f64, f64)> {
+pub(super) fn mean<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray) -> Option<(f64, f64)> {
     let inside = IndexRay::clip(ray, grid)?;
     let mut total = 0.0;
     for segment in inside.segments(grid) {
@@ -54,13 +55,13 @@ pub(crate) fn mean<V: Stored>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray) 
 
 /// A place where the value along a ray crosses a level.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Crossing {
+pub(super) struct Crossing {
     /// Which level.
-    pub(crate) level: usize,
+    pub(super) level: usize,
     /// Distance from the ray's origin, mm.
-    pub(crate) at_mm: f64,
+    pub(super) at_mm: f64,
     /// Gradient there, HU/mm.
-    pub(crate) gradient_per_mm: [f64; 3],
+    pub(super) gradient_per_mm: [f64; 3],
 }
 
 /// Calls `visit` for every crossing of one of the stored `levels` along a ray, front to back, until it returns false.
@@ -68,7 +69,7 @@ pub(crate) struct Crossing {
 /// A point is inside a level where the value is at least the level; a crossing is a change from outside to inside or back.
 /// The state is carried along the ray, so that a crossing on the face between two cells counts once. A volume that begins
 /// or ends inside a level has no crossing at its border.
-pub(crate) fn crossings<V: Stored>(
+pub(super) fn crossings<V: Voxel>(
     lattice: &Lattice<'_, V>,
     grid: &Grid,
     ray: &Ray,
@@ -191,7 +192,7 @@ mod tests {
         let volume = Volume::new(grid, Samples::I16(samples), Rescale::IDENTITY, Quantity::Hu).unwrap();
         for ray in rays() {
             let Some(inside) = IndexRay::clip(&ray, &grid) else { continue };
-            let middle = ray.origin_mm + 0.5 * (inside.enter_mm + inside.exit_mm) * ray.direction;
+            let middle = ray.origin_mm + 0.5 * (inside.enter_mm() + inside.exit_mm()) * ray.direction;
             let (found, length_mm) = mean(&lattice(&volume), &grid, &ray).unwrap();
             let expected = 10.0 * middle.x + 7.0 * middle.y - 30.0 * middle.z;
             assert!((found - expected).abs() < 1e-10, "found {found}, expected {expected}");
