@@ -7,8 +7,8 @@ use super::Color;
 
 /// A widget: exactly one shape, and what it absorbs and emits. Positions are in HU and HU/mm.
 ///
-/// What absorbs needs `color` and exactly one of `opacity_per_mm` and `extinction_per_mm`; `points` carries all three
-/// at its points instead. A widget may emit only.
+/// What absorbs needs `color` and exactly one of `opacity_per_mm` and `extinction_per_mm`; `points` carries them, and its
+/// emission, at its points instead. A widget may emit only.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Widget {
@@ -173,4 +173,7 @@ pub struct PointSpec {
     /// Colour; needed where the point absorbs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<Color>,
+    /// Light of its own, in addition to the light of what absorbs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emission_per_mm: Option<EmissionSpec>,
 }
