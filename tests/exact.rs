@@ -1,102 +1,92 @@
-//! The exact integrator against its own tightest setting; against the oracle in `tests/oracle.rs`.
+//! The exact integrator against the oracle: every pixel within the tolerance, and within the bound it reports.
 
-use std::time::Instant;
-
-use glam::DVec3;
+use crate::support::scenes::{lit, rough_volume, scene_around, thin_shell, two_colors};
 use pellucid::integrate::exact::{Precision, tracer};
-use pellucid::scene::{Background, Camera, Light, Projection, Scene, Shading};
-use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
-use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
+use pellucid::oracle::Oracle;
+use pellucid::scene::Scene;
+use pellucid::transfer::{Curve, Term};
+use pellucid::volume::Volume;
 
-fn rough_volume(n: usize) -> Volume {
-    let mut seed = 3u64;
-    let samples = (0..n * n * n)
-        .map(|_| {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((seed >> 40) % 2000) as i16 - 1000
-        })
-        .collect();
-    let grid = Grid::axis_aligned([n, n, n], DVec3::new(0.7, 0.8, 1.5)).unwrap();
-    Volume::new(grid, Samples::I16(samples), Rescale::IDENTITY, Quantity::Hu).unwrap()
+/// Largest error, and largest ratio of error to reported bound, over all pixels of a scene.
+fn held_against_the_oracle(volume: &Volume, scene: &Scene, tolerance: f64, precision: Precision) -> (f64, f64) {
+    let tracer = tracer(volume, scene, tolerance, precision);
+    let oracle = Oracle::new(volume, scene);
+    let [width, height] = scene.camera.size();
+    let mut worst = (0.0f64, 0.0f64);
+    for pixel in 0..width * height {
+        let ray = scene.camera.pixel_ray(pixel % width, pixel / width);
+        let truth = oracle.radiance(&ray);
+        let Some(found) = tracer.trace(&ray) else {
+            assert_eq!(truth, [0.0; 4], "pixel {pixel} is missed");
+            continue;
+        };
+        let [r, g, b] = found.radiance;
+        let error = [r, g, b, 1.0 - found.transmittance]
+            .iter()
+            .zip(truth)
+            // NaN counts as infinite.
+            .map(|(x, t)| if x.is_nan() { f64::INFINITY } else { (x - t).abs() })
+            .fold(0.0, f64::max);
+        worst = (worst.0.max(error), worst.1.max(error / found.bound));
+    }
+    worst
 }
 
 #[test]
-fn explore() {
-    let volume = rough_volume(24);
-    let knot = |value, s, color| Knot { value, optics: Optics::colored(s, color) };
-    let (red, white, blue) = ([0.9, 0.2, 0.1], [1.0; 3], [0.1, 0.2, 0.9]);
-    let soft = Term {
-        curve: Curve::new(vec![
-            knot(-300.0, 0.0, red),
-            knot(-100.0, 0.15, red),
-            knot(300.0, 0.05, blue),
-            knot(600.0, 0.9, white),
-        ])
-        .unwrap(),
-        weight: None,
-    };
-    let shell = Term {
-        curve: Curve::new(vec![knot(90.0, 0.0, blue), knot(100.0, 3.0, blue), knot(110.0, 0.0, blue)]).unwrap(),
-        weight: Some(Weight::new(vec![[100.0, 0.0], [500.0, 1.0]]).unwrap()),
-    };
-    let center = volume.grid().center_mm();
-    let shading = Shading {
-        ambient: 0.2,
-        diffuse: 0.7,
-        specular: 0.3,
-        shininess: 20.0,
-        two_sided: true,
-        soft_gradient_per_mm: 10.0,
-        lights: vec![Light::Headlight { color: [1.0; 3] }],
-    };
-    for (name, terms) in [("1d", vec![soft.clone()]), ("2d", vec![soft, shell])] {
-        for lit in [None, Some(shading.clone())] {
-            let scene = Scene {
-                transfer_function: TransferFunction::new([-1024.0, 3071.0], 1500.0, terms.clone()).unwrap(),
-                shading: lit,
-                camera: Camera::look_at(
-                    center - DVec3::new(60.0, 50.0, 30.0),
-                    center,
-                    DVec3::Z,
-                    Projection::Perspective { fov_degrees: 25.0 },
-                    [64, 64],
-                )
-                .unwrap(),
-                background: Background::Transparent,
-            };
-            let run = |tolerance: f64, precision| {
-                let t = tracer(&volume, &scene, tolerance, precision);
-                let start = Instant::now();
-                let all: Vec<_> =
-                    (0..64 * 64).filter_map(|i| t.trace(&scene.camera.pixel_ray(i % 64, i / 64))).collect();
-                (all, start.elapsed(), t.kernel().to_string())
-            };
-            let (truth, time, _) = run(if scene.shading.is_some() { 1e-5 } else { 1e-9 }, Precision::Double);
-            println!(
-                "{name} lit {} truth in {time:?}, {} pieces",
-                scene.shading.is_some(),
-                truth.iter().map(|t| t.pieces).sum::<u64>()
-            );
-            for tolerance in [1.0 / 255.0, 1e-3, 1e-4] {
-                for precision in [Precision::Double, Precision::Single] {
-                    let (found, time, kernel) = run(tolerance, precision);
-                    let mut worst = 0.0f64;
-                    let mut tight = 0.0f64;
-                    for (f, t) in found.iter().zip(&truth) {
-                        let e = (0..3)
-                            .map(|c| (f.radiance[c] - t.radiance[c]).abs())
-                            .fold((f.transmittance - t.transmittance).abs(), f64::max);
-                        worst = worst.max(e);
-                        tight = tight.max(e / f.bound);
-                    }
-                    let bound = found.iter().map(|t| t.bound).fold(0.0, f64::max);
-                    println!(
-                        "{kernel} tol {tolerance:.1e}: error {worst:.2e}, error/bound {tight:.3}, bound {bound:.2e}, {} pieces, {time:?}",
-                        found.iter().map(|t| t.pieces).sum::<u64>()
-                    );
-                    assert!(worst < tolerance);
-                }
+fn every_pixel_is_within_tolerance_and_bound() {
+    let volume = rough_volume(14);
+    let shell = vec![two_colors(), thin_shell()];
+    for (name, terms, shading) in [
+        ("1D", vec![two_colors()], None),
+        ("2D", shell.clone(), None),
+        ("1D lit", vec![two_colors()], Some(lit(true))),
+        ("2D lit, one-sided", shell, Some(lit(false))),
+    ] {
+        let scene = scene_around(&volume, terms, shading, [24, 24]);
+        for tolerance in [1.0 / 255.0, 1e-3, 1e-4] {
+            for precision in [Precision::Double, Precision::Single] {
+                let (error, of_bound) = held_against_the_oracle(&volume, &scene, tolerance, precision);
+                assert!(error <= tolerance, "{name}, {precision:?}: error {error:e} over tolerance {tolerance:e}");
+                assert!(
+                    of_bound <= 1.0,
+                    "{name}, {precision:?}, tolerance {tolerance:e}: error is {of_bound} x the bound"
+                );
+                assert!(
+                    error > 1e-3 * tolerance,
+                    "{name}: an error of {error:e} would mean that nothing was traded for time"
+                );
             }
         }
     }
+}
+
+#[test]
+fn a_tighter_tolerance_is_never_worse() {
+    let volume = rough_volume(10);
+    let scene = scene_around(&volume, vec![two_colors(), thin_shell()], Some(lit(true)), [16, 16]);
+    let mut last = f64::INFINITY;
+    for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
+        let (error, _) = held_against_the_oracle(&volume, &scene, tolerance, Precision::Double);
+        assert!(error <= last + 1e-12, "tolerance {tolerance:e}: error {error:e} after {last:e}");
+        last = error;
+    }
+}
+
+#[test]
+fn the_comparison_fails_for_a_picture_that_is_slightly_wrong() {
+    let volume = rough_volume(10);
+    let truth = scene_around(&volume, vec![two_colors()], None, [16, 16]);
+    let mut knots = two_colors().curve.knots().to_vec();
+    for knot in &mut knots {
+        knot.value += 2.0;
+    }
+    let shifted = Term { curve: Curve::new(knots).unwrap(), weight: None };
+    let wrong = scene_around(&volume, vec![shifted], None, [16, 16]);
+    let tracer = tracer(&volume, &wrong, 1e-4, Precision::Double);
+    let oracle = Oracle::new(&volume, &truth);
+    let off = (0..256).filter(|&pixel| {
+        let ray = truth.camera.pixel_ray(pixel % 16, pixel / 16);
+        tracer.trace(&ray).is_some_and(|t| (1.0 - t.transmittance - oracle.radiance(&ray)[3]).abs() > t.bound)
+    });
+    assert!(off.count() > 20, "a transfer function shifted by 2 HU must break the bound");
 }
