@@ -1,5 +1,6 @@
 //! Air: nose, sinuses, mouth, throat and windpipe.
 
+use super::eye;
 use crate::synthetic::sdf::{Solid, blend, ellipsoid, rod, tube};
 use crate::synthetic::tissue::{AIR, MUSCLE, Material, THIN_BONE, Tissue};
 
@@ -13,7 +14,7 @@ pub(super) fn tissues() -> Vec<Tissue> {
         Tissue::new(MUSCLE, soft_palate()),
         Tissue::new(MUSCLE, conchae().mirrored()).core(1.8, Material::Uniform(300.0)),
         Tissue::new(MUSCLE, septum()).core(1.3, THIN_BONE),
-        Tissue::new(Material::AirCells { cell_mm: 8.0 }, ellipsoid((8.5, -60.0, 15.0), (6.0, 20.0, 10.0)).mirrored()),
+        Tissue::new(Material::AirCells { cell_mm: 8.0 }, ethmoid()),
         Tissue::new(AIR, sinuses()),
     ]
 }
@@ -62,6 +63,11 @@ fn septum() -> Solid {
     let back = ellipsoid((0.0, 0.0, 0.0), (1.7, 22.0, 16.0)).placed((1.2, -52.0, -8.0), (1.0, -0.07, 0.0), (0.04, 0.0, 1.0));
     let spur = rod(&[(2.0, -64.0, -13.0, 2.0), (5.0, -62.0, -12.0, 1.2)]);
     blend(6.0, [front, back, spur])
+}
+
+/// Cells between the orbits.
+fn ethmoid() -> Solid {
+    ellipsoid((7.5, -60.0, 15.0), (6.5, 21.0, 10.0)).mirrored().cut(0.5, eye::orbits().grown(1.6))
 }
 
 fn sinuses() -> Solid {

@@ -1,7 +1,7 @@
 //! The cervical spine.
 
 use crate::synthetic::sdf::{Solid, blend, ellipsoid, rod, tube};
-use crate::synthetic::tissue::{CORTICAL, CSF, MUSCLE, Material, Tissue, VERTEBRAL_SPONGE, WHITE};
+use crate::synthetic::tissue::{CSF, DISC, Material, Tissue, VERTEBRAL_SPONGE, WHITE};
 
 /// Cortical bone of the vertebrae is thinner, so looks softer, than that of the skull.
 const VERTEBRAL_CORTEX: Material = Material::Uniform(850.0);
@@ -15,7 +15,7 @@ pub(super) fn tissues() -> Vec<Tissue> {
     tissues.push(Tissue::new(VERTEBRAL_CORTEX, axis()).core(1.3, VERTEBRAL_SPONGE));
     for (level, &(y, z)) in BODIES.iter().enumerate() {
         let disc = ellipsoid((0.0, y - 0.5, z + 8.5), (8.5, 7.5, 3.0));
-        tissues.push(Tissue::new(Material::Uniform(90.0), disc));
+        tissues.push(Tissue::new(DISC, disc));
         tissues.push(Tissue::new(VERTEBRAL_CORTEX, vertebra(level, y, z)).core(1.3, VERTEBRAL_SPONGE));
     }
     let canal = tube(&[
@@ -74,9 +74,3 @@ fn arch(y: f32, z: f32, half_width_mm: f32) -> Solid {
         (0.0, y + 29.0, z - 4.0, 3.4),
     ])
 }
-
-/// Discs look like muscle to a scanner; kept for the scene's reader.
-#[allow(dead_code)]
-const _DISC: Material = MUSCLE;
-#[allow(dead_code)]
-const _C: Material = CORTICAL;
