@@ -1,1 +1,28 @@
 //! What a ray may ask at a point: the value, its gradient, the gradient magnitude, and what blocks of cells hold.
+//!
+//! **Definitions.** Positions are continuous voxel indices inside [`Grid::index_bounds`](crate::volume::Grid::index_bounds).
+//! The cell `(i, j, k)` is the box between the voxels `(i, j, k)` and `(i+1, j+1, k+1)`.
+//!
+//! * *Value* ([`Trilinear::value`]): trilinear interpolation of the stored samples. Kernels work in stored units; the
+//!   rescale to HU is in the [baked transfer function](crate::classify).
+//! * *Gradient* ([`Trilinear::gradient_per_index`]): central differences at the voxels, one-sided on the border, 0 along an
+//!   axis of one voxel; the *vector* is interpolated trilinearly, so it is continuous and, along a ray inside a cell, each
+//!   component is a cubic. [`GradientUnits`] maps it to HU/mm by the inverse transpose of the grid's affine.
+//! * *Gradient magnitude* ([`gradient_magnitude_per_mm`]): the length of that vector at the voxels, HU/mm, as a scalar
+//!   channel that is interpolated like the value. It is what 2D transfer functions classify by. (The length of the
+//!   interpolated vector is another function: it dips where neighbouring gradients disagree.)
+//! * *Macrocells* ([`Macrocells`]): lowest and highest stored value of blocks of 8³ cells, and likewise of the magnitude.
+
+mod gradient;
+mod macrocell;
+mod magnitude;
+mod position;
+mod trilinear;
+mod voxel;
+
+pub use gradient::GradientUnits;
+pub use macrocell::{BLOCK_CELLS, Macrocells};
+pub use magnitude::gradient_magnitude_per_mm;
+pub use position::{Cell, Pace, Position, Step};
+pub use trilinear::{Trilinear, interpolate};
+pub use voxel::Voxel;

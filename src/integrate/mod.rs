@@ -1,1 +1,115 @@
 //! The volume rendering integral along each ray of a picture.
+//!
+//! [`render`] is all a caller needs. A kernel is chosen once per frame by type (voxels, transfer function, shading); the
+//! choices of a [`Schedule`] change how long a picture takes, never the picture.
+
+mod chord;
+mod empty_space;
+mod march;
+mod select;
+mod shade;
+mod tiles;
+
+use std::fmt;
+
+use crate::error::{Error, Fault, Result};
+use crate::image::Image;
+use crate::plan::Method;
+use crate::scene::Scene;
+use crate::volume::Volume;
+
+/// A picture, and what it took.
+#[derive(Debug, Clone)]
+pub struct Rendered {
+    /// Linear, premultiplied RGBA.
+    pub image: Image,
+    /// What it took.
+    pub statistics: Statistics,
+}
+
+/// What a picture took; the same for any number of threads and any tile order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Statistics {
+    /// Places where the transfer function was evaluated.
+    pub samples: u64,
+    /// Rays that met the volume.
+    pub rays: u64,
+    /// The kernel, such as `march/i16/tf2d/lit`.
+    pub kernel: String,
+}
+
+/// Choices that change how long a picture takes, never the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Schedule {
+    /// Seed of a random order of the tiles; `None` row by row.
+    pub shuffled_tiles: Option<u64>,
+    /// Leap over blocks of cells in which nothing absorbs or emits.
+    pub empty_space_skipping: bool,
+}
+
+impl Default for Schedule {
+    fn default() -> Self {
+        Schedule { shuffled_tiles: None, empty_space_skipping: true }
+    }
+}
+
+/// Called from any thread with the number of pixels just finished.
+pub type Progress<'a> = &'a (dyn Fn(usize) + Sync);
+
+/// Renders a scene.
+///
+/// # Errors
+/// `Fault::Spec` for settings that are no numbers, `Fault::Limit` for a step so small that a picture would take for ever,
+/// `Fault::Unsupported` for a method that is not implemented.
+pub fn render(volume: &Volume, scene: &Scene, method: &Method, progress: Progress<'_>) -> Result<Rendered> {
+    render_scheduled(volume, scene, method, Schedule::default(), progress)
+}
+
+/// Renders a scene with a schedule of one's own.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_scheduled(
+    volume: &Volume,
+    scene: &Scene,
+    method: &Method,
+    schedule: Schedule,
+    progress: Progress<'_>,
+) -> Result<Rendered> {
+    match method {
+        Method::March(settings) => {
+            march::check(settings, volume.grid())?;
+            select::march(&Frame { volume, scene, schedule, progress }, settings)
+        }
+        Method::Exact(_) | Method::Reference => {
+            Err(Error::new(Fault::Unsupported, "this method of integration is not implemented")
+                .element("integrate")
+                .found(format!("{method:?}"))
+                .remedy("integrate with `march`"))
+        }
+    }
+}
+
+/// What is pictured, and how the work is to be done.
+#[derive(Clone, Copy)]
+struct Frame<'a> {
+    volume: &'a Volume,
+    scene: &'a Scene,
+    schedule: Schedule,
+    progress: Progress<'a>,
+}
+
+/// Names a kernel by the types it was made of.
+struct KernelName {
+    method: &'static str,
+    voxel: &'static str,
+    reads_gradient: bool,
+    shader: &'static str,
+}
+
+impl fmt::Display for KernelName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let classifier = if self.reads_gradient { "tf2d" } else { "tf1d" };
+        write!(f, "{}/{}/{classifier}/{}", self.method, self.voxel, self.shader)
+    }
+}

@@ -1,1 +1,8 @@
-//! Mathematics without a domain: polynomials, stable exponentials, counter-based hashes.
+//! Mathematics without a domain: real numbers in two precisions, polynomials in Bernstein form, stable exponentials.
+
+mod absorb;
+pub mod bernstein;
+mod real;
+
+pub use absorb::{absorbed_f32, mean_transmittance_f32};
+pub use real::Real;

@@ -1,0 +1,128 @@
+//! The gradient: central differences at the voxels, interpolated trilinearly.
+
+use super::{Cell, Trilinear, Voxel, interpolate};
+use crate::volume::{Grid, Rescale};
+
+impl<V: Voxel> Trilinear<'_, V> {
+    /// The gradient at a point, in stored units per index step: central differences at the eight corners, one-sided on the
+    /// border, 0 along an axis of one voxel; the vector is interpolated trilinearly.
+    #[inline(always)]
+    pub fn gradient_per_index(&self, cell: &Cell) -> [f32; 3] {
+        let inside = (0..3).all(|a| cell.corner[a] >= 1 && cell.corner[a] + 2 < self.dims[a]);
+        if inside { self.gradient_inside(cell) } else { self.gradient_at_border(cell) }
+    }
+
+    /// All 32 voxels around the cell exist.
+    #[inline(always)]
+    fn gradient_inside(&self, cell: &Cell) -> [f32; 3] {
+        let base = self.base(cell);
+        let corners = self.corner_offsets().map(|offset| base + offset);
+        self.strides.map(|stride| {
+            let twice = corners.map(|at| self.voxels[at + stride].minus(self.voxels[at - stride]));
+            0.5 * interpolate(twice, cell.fraction)
+        })
+    }
+
+    #[cold]
+    fn gradient_at_border(&self, cell: &Cell) -> [f32; 3] {
+        std::array::from_fn(|axis| {
+            let differences = std::array::from_fn(|c| {
+                let corner: [usize; 3] = std::array::from_fn(|a| (cell.corner[a] + (c >> a & 1)).min(self.dims[a] - 1));
+                self.difference(corner, axis)
+            });
+            interpolate(differences, cell.fraction)
+        })
+    }
+
+    /// The central difference along `axis` at a voxel, stored units per index step; one-sided on the border.
+    fn difference(&self, voxel: [usize; 3], axis: usize) -> f32 {
+        let (mut before, mut after) = (voxel, voxel);
+        before[axis] = voxel[axis].saturating_sub(1);
+        after[axis] = (voxel[axis] + 1).min(self.dims[axis] - 1);
+        let place = |[i, j, k]: [usize; 3]| i * self.strides[0] + j * self.strides[1] + k * self.strides[2];
+        let difference = self.voxels[place(after)].minus(self.voxels[place(before)]);
+        match after[axis] - before[axis] {
+            2 => 0.5 * difference,
+            // One step, or none, where the difference is 0.
+            _ => difference,
+        }
+    }
+}
+
+/// The linear map from a gradient in stored units per index step to HU/mm.
+#[derive(Debug, Clone, Copy)]
+pub struct GradientUnits {
+    rows: [[f32; 3]; 3],
+}
+
+impl GradientUnits {
+    /// The inverse transpose of the grid's affine, times the slope of the rescale.
+    pub fn new(grid: &Grid, rescale: Rescale) -> Self {
+        let matrix = (grid.gradient_to_per_mm() * rescale.slope).transpose();
+        GradientUnits { rows: matrix.to_cols_array_2d().map(|row| row.map(|x| x as f32)) }
+    }
+
+    /// HU/mm along the axes of the patient (LPS).
+    #[inline(always)]
+    pub fn per_mm(&self, per_index: [f32; 3]) -> [f32; 3] {
+        let [x, y, z] = per_index;
+        self.rows.map(|[a, b, c]| a * x + b * y + c * z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::Position;
+    use glam::{DAffine3, DMat3, DVec3};
+
+    /// The definition in f64: differences at lattice points, weighted by hat functions.
+    fn gradient_by_definition(voxels: &[i16], dims: [usize; 3], at: DVec3) -> DVec3 {
+        let value = |p: [usize; 3]| f64::from(voxels[p[0] + dims[0] * (p[1] + dims[1] * p[2])]);
+        let mut sum = DVec3::ZERO;
+        for index in 0..voxels.len() {
+            let p = [index % dims[0], index / dims[0] % dims[1], index / (dims[0] * dims[1])];
+            let hat = |a: usize| if dims[a] == 1 { 1.0 } else { (1.0 - (at[a] - p[a] as f64).abs()).max(0.0) };
+            for axis in 0..3 {
+                let (mut low, mut high) = (p, p);
+                low[axis] = p[axis].max(1) - 1;
+                high[axis] = (p[axis] + 1).min(dims[axis] - 1);
+                if high[axis] > low[axis] {
+                    let slope = (value(high) - value(low)) / (high[axis] - low[axis]) as f64;
+                    sum[axis] += hat(0) * hat(1) * hat(2) * slope;
+                }
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn it_equals_the_definition_inside_and_on_the_border() {
+        for dims in [[7, 6, 5], [4, 4, 4], [3, 7, 6], [2, 2, 2], [1, 5, 6], [6, 1, 5], [6, 5, 1], [1, 1, 1]] {
+            let count: usize = dims.iter().product();
+            let voxels: Vec<i16> = (0..count).map(|i| ((i * 7919) % 4096) as i16 - 1024).collect();
+            let field = Trilinear::new(&voxels, dims).unwrap();
+            for i in 0..300 {
+                let u = |k: f64| (f64::from(i) * k).fract();
+                let at = DVec3::from_array(dims.map(|n| (n - 1) as f64)) * DVec3::new(u(0.618), u(0.414), u(0.732));
+                let found = field.gradient_per_index(&Position::new(at, dims).cell());
+                let expected = gradient_by_definition(&voxels, dims, at);
+                let apart = (DVec3::from_array(found.map(f64::from)) - expected).length();
+                assert!(apart < 4e-3, "{dims:?} at {at}: found {found:?}, expected {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn units_are_covariant_and_scaled() {
+        let m = DMat3::from_cols(DVec3::new(0.3, 0.1, 0.0), DVec3::new(-0.2, 0.5, 0.3), DVec3::new(0.0, 0.7, -5.0));
+        let grid = Grid::new([4, 4, 4], DAffine3::from_mat3(m)).unwrap();
+        let units = GradientUnits::new(&grid, Rescale { slope: -2.0, intercept: 9.0 });
+        let a = DVec3::new(3.0, -2.0, 0.5);
+        // What a linear field of slope a (HU/mm) stores per index step.
+        let per_index = (m.transpose() * a / -2.0).to_array().map(|x| x as f32);
+        let found = units.per_mm(per_index);
+        let apart = (DVec3::from_array(found.map(f64::from)) - a).length();
+        assert!(apart < 1e-6, "found {found:?}, expected {a}");
+    }
+}

@@ -1,0 +1,113 @@
+//! Macrocells: value ranges of blocks of cells, for skipping empty space.
+
+use rayon::prelude::*;
+
+use super::{Trilinear, Voxel};
+
+/// Base-2 logarithm of the cells per axis of a block.
+pub(super) const LOG2_BLOCK_CELLS: u32 = 3;
+
+/// Cells per axis of a block.
+pub const BLOCK_CELLS: usize = 1 << LOG2_BLOCK_CELLS;
+
+/// Value ranges of blocks of 8³ cells, including the voxels on their upper faces: whatever is interpolated in a block lies
+/// in its range.
+#[derive(Debug, Clone)]
+pub struct Macrocells {
+    blocks: [usize; 3],
+    ranges: Vec<[f32; 2]>,
+}
+
+impl Macrocells {
+    /// Base-2 logarithm of [`BLOCK_CELLS`].
+    pub const LOG2_CELLS: u32 = LOG2_BLOCK_CELLS;
+
+    /// The ranges of a channel, computed in parallel.
+    pub fn new<V: Voxel>(field: &Trilinear<'_, V>) -> Self {
+        let blocks = field.dims.map(|n| (n - 1).div_ceil(BLOCK_CELLS).max(1));
+        let [across, down, _] = blocks;
+        let mut ranges = vec![[0.0; 2]; blocks.iter().product()];
+        ranges.par_chunks_mut(across * down).enumerate().for_each(|(k, slab)| {
+            for (j, row) in slab.chunks_mut(across).enumerate() {
+                fill_row(field, j, k, row);
+            }
+        });
+        Macrocells { blocks, ranges }
+    }
+
+    /// Number of blocks along i, j and k.
+    pub fn blocks(&self) -> [usize; 3] {
+        self.blocks
+    }
+
+    /// Lowest and highest stored value of each block, x fastest.
+    pub fn ranges(&self) -> &[[f32; 2]] {
+        &self.ranges
+    }
+}
+
+/// Voxels of a block along an axis of `n` voxels, its upper face included.
+fn voxels_of(block: usize, n: usize) -> std::ops::RangeInclusive<usize> {
+    let first = block * BLOCK_CELLS;
+    first..=(first + BLOCK_CELLS).min(n - 1)
+}
+
+/// Whole lines of voxels are reduced across the line first, which vectorises, and each block along the line last.
+fn fill_row<V: Voxel>(field: &Trilinear<'_, V>, j: usize, k: usize, row: &mut [[f32; 2]]) {
+    let [nx, ny, nz] = field.dims;
+    let first = field.voxels[nx * (j * BLOCK_CELLS + ny * k * BLOCK_CELLS)..][..nx].to_vec();
+    let (mut low, mut high) = (first.clone(), first);
+    for z in voxels_of(k, nz) {
+        for y in voxels_of(j, ny) {
+            let line = &field.voxels[nx * (y + ny * z)..][..nx];
+            for ((&v, low), high) in line.iter().zip(&mut low).zip(&mut high) {
+                *low = if v < *low { v } else { *low };
+                *high = if v > *high { v } else { *high };
+            }
+        }
+    }
+    for (i, range) in row.iter_mut().enumerate() {
+        let (low, high) = (&low[voxels_of(i, nx)], &high[voxels_of(i, nx)]);
+        let least = low.iter().fold(low[0], |a, &b| if b < a { b } else { a });
+        let most = high.iter().fold(high[0], |a, &b| if b > a { b } else { a });
+        *range = [least.to_f32(), most.to_f32()];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::Position;
+    use glam::DVec3;
+
+    #[test]
+    fn every_interpolated_value_lies_in_the_range_of_its_block() {
+        for dims in [[20, 17, 9], [9, 8, 1], [1, 1, 1], [2, 30, 3]] {
+            let count: usize = dims.iter().product();
+            let voxels: Vec<i16> = (0..count).map(|i| ((i * 7919) % 4096) as i16 - 1024).collect();
+            let field = Trilinear::new(&voxels, dims).unwrap();
+            let macrocells = Macrocells::new(&field);
+            let [across, down, _] = macrocells.blocks();
+            for i in 0..20_000 {
+                let u = |k: f64| (f64::from(i) * k).fract();
+                let at = DVec3::from_array(dims.map(|n| (n - 1) as f64)) * DVec3::new(u(0.618), u(0.414), u(0.732));
+                let position = Position::new(at, dims);
+                let [bi, bj, bk] = position.block(Macrocells::LOG2_CELLS);
+                let [low, high] = macrocells.ranges()[bi + across * (bj + down * bk)];
+                let value = field.value(&position.cell());
+                assert!(
+                    low - 1e-3 <= value && value <= high + 1e-3,
+                    "{dims:?} at {at}: {value} not in [{low}, {high}]"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_upper_face_counts() {
+        let mut voxels = vec![0i16; 17 * 2 * 2];
+        voxels[8] = 100;
+        let macrocells = Macrocells::new(&Trilinear::new(&voxels, [17, 2, 2]).unwrap());
+        assert_eq!(macrocells.ranges(), [[0.0, 100.0], [0.0, 100.0]], "voxel 8 is a corner of cells 7 and 8");
+    }
+}

@@ -1,0 +1,119 @@
+//! Where a ray is inside the volume.
+
+use glam::DVec3;
+
+use crate::scene::Ray;
+use crate::volume::Grid;
+
+/// The part of a ray inside the domain, in f64 and from its own entry, so that the distance of the camera costs no
+/// precision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Chord {
+    /// Entry, as a distance along the ray, mm.
+    pub(super) entry_mm: f64,
+    /// Length inside the domain, mm; above 0.
+    pub(super) length_mm: f64,
+    /// Entry, as a continuous voxel index.
+    pub(super) entry_index: DVec3,
+    /// Direction, voxels per mm.
+    pub(super) index_per_mm: DVec3,
+}
+
+impl Chord {
+    /// The part of `ray` inside the domain and in front of its origin; `None` if it has no length.
+    ///
+    /// Slabs (Kay and Kajiya 1986) in index space, where the domain is a box whatever the shear. An axis the ray does not
+    /// move on is a test of its own, so that 0 · ∞ cannot arise.
+    pub(super) fn new(grid: &Grid, ray: Ray) -> Option<Self> {
+        let to_index = grid.lps_mm_to_index();
+        let origin = to_index.transform_point3(ray.origin_mm);
+        let direction = to_index.transform_vector3(ray.direction);
+        let (low, high) = grid.index_bounds();
+        let (mut entry_mm, mut exit_mm) = (0.0f64, f64::INFINITY);
+        for a in 0..3 {
+            if direction[a] == 0.0 {
+                if origin[a] < low[a] || origin[a] > high[a] {
+                    return None;
+                }
+                continue;
+            }
+            let (s, t) = ((low[a] - origin[a]) / direction[a], (high[a] - origin[a]) / direction[a]);
+            entry_mm = entry_mm.max(s.min(t));
+            exit_mm = exit_mm.min(s.max(t));
+        }
+        let length_mm = exit_mm - entry_mm;
+        (length_mm > 0.0 && length_mm.is_finite()).then(|| Chord {
+            entry_mm,
+            length_mm,
+            entry_index: origin + entry_mm * direction,
+            index_per_mm: direction,
+        })
+    }
+
+    /// Continuous voxel index at a distance from the entry.
+    pub(super) fn index_at(&self, mm: f64) -> DVec3 {
+        self.entry_index + mm * self.index_per_mm
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid() -> Grid {
+        Grid::axis_aligned([11, 21, 31], DVec3::new(1.0, 0.5, 2.0)).unwrap()
+    }
+
+    fn chord(origin_mm: DVec3, direction: DVec3) -> Option<Chord> {
+        Chord::new(&grid(), Ray { origin_mm, direction: direction.normalize() })
+    }
+
+    #[test]
+    fn along_an_axis() {
+        let c = chord(DVec3::new(5.0, 5.0, -7.0), DVec3::Z).unwrap();
+        assert_eq!((c.entry_mm, c.length_mm), (7.0, 60.0));
+        assert_eq!(c.entry_index, DVec3::new(5.0, 10.0, 0.0));
+        let back = chord(DVec3::new(5.0, 5.0, 67.0), -DVec3::Z).unwrap();
+        assert_eq!((back.entry_mm, back.length_mm), (7.0, 60.0));
+    }
+
+    #[test]
+    fn from_inside_it_begins_at_the_origin() {
+        let c = chord(DVec3::new(5.0, 5.0, 20.0), DVec3::Z).unwrap();
+        assert_eq!((c.entry_mm, c.length_mm), (0.0, 40.0));
+    }
+
+    #[test]
+    fn behind_beside_and_touching_are_missed() {
+        assert_eq!(chord(DVec3::new(5.0, 5.0, 61.0), DVec3::Z), None, "behind");
+        assert_eq!(chord(DVec3::new(10.1, 5.0, -1.0), DVec3::Z), None, "beside, parallel to a face");
+        assert_eq!(chord(DVec3::new(-1.0, -1.0, 5.0), DVec3::new(1.0, -1.0, 0.0)), None, "away");
+        assert_eq!(chord(DVec3::new(-1.0, 1.0, 5.0), DVec3::new(1.0, -1.0, 0.0)), None, "a point of an edge");
+    }
+
+    #[test]
+    fn on_a_face_and_nearly_parallel_are_met() {
+        assert!(chord(DVec3::new(10.0, 5.0, -1.0), DVec3::Z).is_some(), "on the upper face");
+        assert!(chord(DVec3::new(0.0, 0.0, -1.0), DVec3::Z).is_some(), "on an edge");
+        for tiny in [1e-12, 1e-30, 1e-300, -1e-300] {
+            let c = chord(DVec3::new(5.0, 5.0, -1.0), DVec3::new(tiny, tiny, 1.0)).unwrap();
+            assert!((c.length_mm - 60.0).abs() < 1e-9, "{tiny:e}: length {}", c.length_mm);
+        }
+    }
+
+    #[test]
+    fn a_far_camera_costs_nothing() {
+        let near = chord(DVec3::new(5.0, 5.0, 30.0) - 100.0 * DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.6, 0.0, 0.8));
+        let far = chord(DVec3::new(5.0, 5.0, 30.0) - 1e6 * DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.6, 0.0, 0.8));
+        let (near, far) = (near.unwrap(), far.unwrap());
+        assert!((near.length_mm - far.length_mm).abs() < 1e-8, "{} and {}", near.length_mm, far.length_mm);
+        assert!((near.entry_index - far.entry_index).length() < 1e-8, "{} and {}", near.entry_index, far.entry_index);
+    }
+
+    #[test]
+    fn an_axis_of_one_voxel_is_as_thick_as_its_spacing() {
+        let flat = Grid::axis_aligned([4, 4, 1], DVec3::new(1.0, 1.0, 5.0)).unwrap();
+        let ray = Ray { origin_mm: DVec3::new(1.0, 1.0, -50.0), direction: DVec3::Z };
+        assert!((Chord::new(&flat, ray).unwrap().length_mm - 5.0).abs() < 1e-12);
+    }
+}

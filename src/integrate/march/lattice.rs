@@ -1,0 +1,180 @@
+//! Where a ray is cut into intervals, and where each interval is sampled.
+//!
+//! The cuts are at 0, at the length of the ray, and at `first + i · step` between, each computed from its number and never
+//! by adding steps up. The first and the last interval may be shorter than a step; both count with their own length.
+
+use glam::DVec3;
+
+use super::jitter;
+use crate::integrate::chord::Chord;
+use crate::plan::{Lattice, March, Order, SampleRule};
+use crate::scene::Ray;
+
+/// The cuts of one ray: `intervals` of them, each as long as the step but for the first and the last.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cuts {
+    first_mm: f64,
+    step_mm: f64,
+    length_mm: f64,
+    intervals: usize,
+}
+
+/// Samples at equal distances, all of which stand for the same length of the ray.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Stretch {
+    /// Place of the first sample, mm from the entry.
+    pub(super) first_mm: f64,
+    /// Place of the last one.
+    pub(super) last_mm: f64,
+    /// Number of samples.
+    pub(super) samples: usize,
+    /// Length that each stands for: of its interval, or of the one between it and the sample visited before.
+    pub(super) delta_mm: f64,
+}
+
+impl Cuts {
+    /// Cuts a ray's chord as the settings say. `anchor_mm` is a point on one of the view planes.
+    pub(super) fn new(
+        settings: &March,
+        chord: &Chord,
+        ray: Ray,
+        forward: DVec3,
+        anchor_mm: DVec3,
+        [column, row]: [usize; 2],
+    ) -> Self {
+        let offset = jitter::offset(settings.jitter, column, row);
+        match settings.lattice {
+            Lattice::PerRay => Cuts::from_first(settings.step_mm * (1.0 - offset), settings.step_mm, chord.length_mm),
+            Lattice::ViewPlanes => {
+                let slope = ray.direction.dot(forward);
+                let entry_depth_mm = (ray.origin_mm - anchor_mm).dot(forward) + chord.entry_mm * slope;
+                let planes_passed = entry_depth_mm / settings.step_mm + offset;
+                let to_next_plane = 1.0 - (planes_passed - planes_passed.floor());
+                let step_mm = settings.step_mm / slope;
+                Cuts::from_first(step_mm * to_next_plane, step_mm, chord.length_mm)
+            }
+        }
+    }
+
+    fn from_first(first_mm: f64, step_mm: f64, length_mm: f64) -> Self {
+        // A rest below a billionth of a step is rounding, and goes to the interval before it.
+        let more = ((length_mm - first_mm) / step_mm - 1e-9).ceil().max(0.0);
+        Cuts { first_mm, step_mm, length_mm, intervals: 1 + more as usize }
+    }
+
+    /// Cut `i` of `0..=intervals`, mm from the entry.
+    fn at(&self, i: usize) -> f64 {
+        match i {
+            0 => 0.0,
+            _ if i >= self.intervals => self.length_mm,
+            _ => self.first_mm + (i - 1) as f64 * self.step_mm,
+        }
+    }
+
+    /// The samples in the order they are visited, as at most four stretches.
+    pub(super) fn stretches(&self, rule: SampleRule, order: Order) -> [Stretch; 4] {
+        let n = self.intervals;
+        let length = |i: usize| self.at(i + 1) - self.at(i);
+        let middle = |i: usize| 0.5 * (self.at(i) + self.at(i + 1));
+        let stretch = |first_mm: f64, last_mm: f64, samples: usize, delta_mm: f64| Stretch {
+            first_mm,
+            last_mm,
+            samples,
+            delta_mm,
+        };
+        let inner = n.saturating_sub(2);
+        let mut stretches = match rule {
+            SampleRule::Left | SampleRule::Midpoint => {
+                let place = |i: usize| if rule == SampleRule::Left { self.at(i) } else { middle(i) };
+                let one = |i: usize, samples: usize| stretch(place(i), place(i), samples, length(i));
+                let between = stretch(place(1), place(n.max(2) - 2), inner, self.step_mm);
+                [one(0, 1), between, one(n - 1, usize::from(n > 1)), Stretch::default()]
+            }
+            SampleRule::Trapezoid => {
+                // Nodes are the cuts; each closes the interval from the node visited before it.
+                let one = |i: usize, samples: usize, delta: f64| stretch(self.at(i), self.at(i), samples, delta);
+                let both = usize::from(n > 1);
+                match order {
+                    Order::FrontToBack => [
+                        one(0, 1, 0.0),
+                        one(1, both, length(0)),
+                        stretch(self.at(2), self.at(n.max(2) - 1), inner, self.step_mm),
+                        one(n, 1, length(n - 1)),
+                    ],
+                    Order::BackToFront => [
+                        one(0, 1, length(0)),
+                        stretch(self.at(1), self.at(n.max(2) - 2), inner, self.step_mm),
+                        one(n - 1, both, length(n - 1)),
+                        one(n, 1, 0.0),
+                    ],
+                }
+            }
+        };
+        if order == Order::BackToFront {
+            stretches.reverse();
+            for s in &mut stretches {
+                (s.first_mm, s.last_mm) = (s.last_mm, s.first_mm);
+            }
+        }
+        stretches
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All samples as (place, length).
+    fn samples(cuts: Cuts, rule: SampleRule, order: Order) -> Vec<(f64, f64)> {
+        let mut all = Vec::new();
+        for s in cuts.stretches(rule, order) {
+            for i in 0..s.samples {
+                let share = if s.samples > 1 { i as f64 / (s.samples - 1) as f64 } else { 0.0 };
+                all.push((s.first_mm + share * (s.last_mm - s.first_mm), s.delta_mm));
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn partial_intervals_count_with_their_own_length() {
+        let cuts = Cuts::from_first(0.5, 2.0, 5.0);
+        let left = samples(cuts, SampleRule::Left, Order::FrontToBack);
+        assert_eq!(left, [(0.0, 0.5), (0.5, 2.0), (2.5, 2.0), (4.5, 0.5)]);
+        let middle = samples(cuts, SampleRule::Midpoint, Order::FrontToBack);
+        assert_eq!(middle, [(0.25, 0.5), (1.5, 2.0), (3.5, 2.0), (4.75, 0.5)]);
+        let nodes = samples(cuts, SampleRule::Trapezoid, Order::FrontToBack);
+        assert_eq!(nodes, [(0.0, 0.0), (0.5, 0.5), (2.5, 2.0), (4.5, 2.0), (5.0, 0.5)]);
+        let nodes = samples(cuts, SampleRule::Trapezoid, Order::BackToFront);
+        assert_eq!(nodes, [(5.0, 0.0), (4.5, 0.5), (2.5, 2.0), (0.5, 2.0), (0.0, 0.5)]);
+    }
+
+    #[test]
+    fn lengths_add_up_to_the_ray_for_any_step() {
+        for rule in [SampleRule::Left, SampleRule::Midpoint, SampleRule::Trapezoid] {
+            for order in [Order::FrontToBack, Order::BackToFront] {
+                for (first, step, length) in [
+                    (1.0, 1.0, 7.0),
+                    (0.3, 1.0, 7.0),
+                    (1.0, 1.0, 7.3),
+                    (9.0, 9.0, 7.0),
+                    (3.0, 5.0, 7.0),
+                    (0.1, 0.1, 1e3),
+                ] {
+                    let all = samples(Cuts::from_first(first, step, length), rule, order);
+                    let sum: f64 = all.iter().map(|s| s.1).sum();
+                    assert!((sum - length).abs() < 1e-9 * length, "{rule:?} {order:?} {step}: {sum} of {length}");
+                    let sorted = all.windows(2).all(|w| (w[0].0 < w[1].0) == (order == Order::FrontToBack));
+                    assert!(sorted, "{rule:?} {order:?}: {all:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_longer_than_the_ray_is_one_interval() {
+        let cuts = Cuts::from_first(50.0, 50.0, 7.0);
+        assert_eq!(samples(cuts, SampleRule::Midpoint, Order::FrontToBack), [(3.5, 7.0)]);
+        assert_eq!(samples(cuts, SampleRule::Trapezoid, Order::FrontToBack), [(0.0, 0.0), (7.0, 7.0)]);
+    }
+}

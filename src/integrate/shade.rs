@@ -1,0 +1,172 @@
+//! Shading of a sample by its gradient: the definition of [`Shading`] in f32.
+
+use glam::DVec3;
+
+use crate::classify::Rgbs;
+use crate::scene::Shading;
+
+/// Shades a sample. Chosen by type, once per frame.
+pub(super) trait Shader: Sync {
+    /// Whether the gradient is read at all.
+    const READS_GRADIENT: bool;
+    /// Name in kernel names.
+    const NAME: &'static str;
+    /// What is constant along a ray.
+    type Aim: Default;
+
+    /// Computes what is constant along a ray of this direction.
+    fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
+
+    /// Emission after shading, for a gradient in HU/mm.
+    fn shade(&self, aim: &Self::Aim, sample: Rgbs<f32>, gradient_per_mm: [f32; 3]) -> Rgbs<f32>;
+}
+
+/// Emission and absorption alone.
+pub(super) struct Unlit;
+
+impl Shader for Unlit {
+    const READS_GRADIENT: bool = false;
+    const NAME: &'static str = "unlit";
+    type Aim = ();
+
+    fn aim(&self, _direction: DVec3, _aim: &mut ()) {}
+
+    #[inline(always)]
+    fn shade(&self, _aim: &(), sample: Rgbs<f32>, _gradient_per_mm: [f32; 3]) -> Rgbs<f32> {
+        sample
+    }
+}
+
+/// Levoy's gradient shading with the Blinn-Phong reflection.
+pub(super) struct Lit<'a> {
+    definition: &'a Shading,
+    ambient: f32,
+    shininess: f32,
+    two_sided: bool,
+    soft_square: f32,
+}
+
+/// A light as seen along one ray.
+pub(super) struct Beam {
+    towards: [f32; 3],
+    half: [f32; 3],
+    /// `diffuse · color` and `specular · color`.
+    diffuse: [f32; 3],
+    specular: [f32; 3],
+}
+
+impl<'a> Lit<'a> {
+    pub(super) fn new(definition: &'a Shading) -> Self {
+        Lit {
+            definition,
+            ambient: definition.ambient as f32,
+            shininess: definition.shininess as f32,
+            two_sided: definition.two_sided,
+            soft_square: (definition.soft_gradient_per_mm * definition.soft_gradient_per_mm) as f32,
+        }
+    }
+
+    /// `d(x)` of the definition. At most 1: rounding may lift the cosine of two unit vectors above it.
+    #[inline(always)]
+    fn facing(&self, cosine: f32) -> f32 {
+        let lit = if self.two_sided { cosine.abs() } else { cosine.max(0.0) };
+        lit.min(1.0)
+    }
+}
+
+impl Shader for Lit<'_> {
+    const READS_GRADIENT: bool = true;
+    const NAME: &'static str = "lit";
+    type Aim = Vec<Beam>;
+
+    fn aim(&self, direction: DVec3, aim: &mut Vec<Beam>) {
+        aim.clear();
+        aim.extend(self.definition.directions(direction).map(|(towards, half, color)| Beam {
+            towards: towards.as_vec3().to_array(),
+            half: half.as_vec3().to_array(),
+            diffuse: color.map(|c| (c * self.definition.diffuse) as f32),
+            specular: color.map(|c| (c * self.definition.specular) as f32),
+        }));
+    }
+
+    #[inline(always)]
+    fn shade(&self, aim: &Vec<Beam>, [r, g, b, extinction]: Rgbs<f32>, gradient_per_mm: [f32; 3]) -> Rgbs<f32> {
+        let mut reflected = [self.ambient; 3];
+        let mut highlight = [0.0; 3];
+        let square = dot(gradient_per_mm, gradient_per_mm);
+        if square > 0.0 {
+            let fade = square / (square + self.soft_square);
+            let toward_normal = -1.0 / square.sqrt();
+            for beam in aim {
+                let lit = self.facing(dot(gradient_per_mm, beam.towards) * toward_normal);
+                let shine = self.facing(dot(gradient_per_mm, beam.half) * toward_normal);
+                let gloss = if lit > 0.0 { shine.powf(self.shininess) } else { 0.0 };
+                for c in 0..3 {
+                    reflected[c] += beam.diffuse[c] * (fade * lit);
+                    highlight[c] += beam.specular[c] * (fade * gloss);
+                }
+            }
+        }
+        let shaded = |q: f32, c: usize| q * reflected[c] + extinction * highlight[c];
+        [shaded(r, 0), shaded(g, 1), shaded(b, 2), extinction]
+    }
+}
+
+#[inline(always)]
+fn dot([ax, ay, az]: [f32; 3], [bx, by, bz]: [f32; 3]) -> f32 {
+    ax * bx + ay * by + az * bz
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Light;
+
+    fn shading(two_sided: bool, soft_gradient_per_mm: f64) -> Shading {
+        Shading {
+            ambient: 0.15,
+            diffuse: 0.7,
+            specular: 0.4,
+            shininess: 17.5,
+            two_sided,
+            soft_gradient_per_mm,
+            lights: vec![
+                Light::Headlight { color: [0.9, 0.8, 0.7] },
+                Light::Directional { towards: DVec3::new(0.48, -0.6, 0.64), color: [0.1, 0.5, 1.0] },
+            ],
+        }
+    }
+
+    #[test]
+    fn it_equals_the_definition() {
+        for (two_sided, soft) in [(false, 0.0), (true, 0.0), (false, 80.0), (true, 80.0)] {
+            let definition = shading(two_sided, soft);
+            let lit = Lit::new(&definition);
+            let mut aim = Vec::new();
+            for i in 0..3000 {
+                let u = |k: f64| (f64::from(i) * k).fract() - 0.5;
+                let direction = DVec3::new(u(0.271), u(0.828), u(0.577)).normalize();
+                let gradient = DVec3::new(u(0.618), u(0.414), u(0.732)) * 400.0 * u(0.05).abs();
+                let sample = [0.5, 0.25, 0.125, 0.75];
+                lit.aim(direction, &mut aim);
+                let found = lit.shade(&aim, sample, gradient.as_vec3().to_array());
+                let (reflected, highlight) = definition.factors(gradient, direction);
+                for c in 0..3 {
+                    let expected = f64::from(sample[c]) * reflected[c] + 0.75 * highlight[c];
+                    let apart = (f64::from(found[c]) - expected).abs();
+                    assert!(apart < 1e-5, "ray {i}, channel {c}: found {}, expected {expected}", found[c]);
+                }
+                assert_eq!(found[3], 0.75, "shading leaves extinction alone");
+            }
+        }
+    }
+
+    #[test]
+    fn no_gradient_leaves_the_ambient_term() {
+        let definition = shading(true, 0.0);
+        let lit = Lit::new(&definition);
+        let mut aim = Vec::new();
+        lit.aim(DVec3::X, &mut aim);
+        assert_eq!(lit.shade(&aim, [1.0, 1.0, 1.0, 5.0], [0.0; 3]), [0.15, 0.15, 0.15, 5.0]);
+    }
+}

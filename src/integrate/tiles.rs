@@ -1,0 +1,139 @@
+//! Tiles of pixels over threads.
+//!
+//! A pixel's arithmetic depends on nothing but the pixel, and each tile writes rows of its own, so the picture is the same
+//! to the bit for any number of threads and any order of tiles.
+
+use rayon::prelude::*;
+
+use super::Frame;
+use crate::image::Image;
+use crate::scene::Background;
+
+/// Pixels per side of a tile: neighbouring rays read the same voxels.
+const TILE: usize = 16;
+
+/// Light that reaches the eye along a ray, and what it took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Radiance {
+    /// Linear RGB.
+    pub(super) color: [f32; 3],
+    /// What is let through from behind.
+    pub(super) transmittance: f32,
+    /// Places where the transfer function was evaluated.
+    pub(super) samples: u64,
+}
+
+/// Sums over a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Tally {
+    pub(super) samples: u64,
+    pub(super) rays: u64,
+}
+
+/// A tile: its place, and its rows in the picture.
+struct Tile<'p> {
+    column: usize,
+    row: usize,
+    rows: Vec<&'p mut [[f32; 4]]>,
+}
+
+/// Renders all pixels: `pixel` gives the light along the ray through `(column, row)`, `None` where it misses the volume;
+/// `scratch` makes what a thread keeps between pixels.
+pub(super) fn render<W>(
+    frame: &Frame<'_>,
+    scratch: impl Fn() -> W + Sync + Send,
+    pixel: impl Fn(&mut W, usize, usize) -> Option<Radiance> + Sync,
+) -> (Image, Tally) {
+    let [width, height] = frame.scene.camera.size();
+    let mut image = Image::transparent(width, height);
+    let mut tiles = cut(image.pixels_mut(), width);
+    if let Some(seed) = frame.schedule.shuffled_tiles {
+        shuffle(&mut tiles, seed);
+    }
+    let tally = tiles
+        .par_iter_mut()
+        .with_max_len(1)
+        .map_init(&scratch, |scratch, tile| {
+            let mut tally = Tally::default();
+            for (y, row) in tile.rows.iter_mut().enumerate() {
+                for (x, out) in row.iter_mut().enumerate() {
+                    let light = pixel(scratch, tile.column + x, tile.row + y);
+                    tally.rays += u64::from(light.is_some());
+                    tally.samples += light.map_or(0, |l| l.samples);
+                    *out = over(light, frame.scene.background);
+                }
+            }
+            (frame.progress)(tile.rows.iter().map(|row| row.len()).sum());
+            tally
+        })
+        .reduce(Tally::default, |a, b| Tally { samples: a.samples + b.samples, rays: a.rays + b.rays });
+    (image, tally)
+}
+
+fn cut(pixels: &mut [[f32; 4]], width: usize) -> Vec<Tile<'_>> {
+    let mut tiles: Vec<Tile<'_>> = Vec::new();
+    for (band, pixels) in pixels.chunks_mut(TILE * width).enumerate() {
+        let first = tiles.len();
+        tiles.extend((0..width).step_by(TILE).map(|column| Tile { column, row: band * TILE, rows: Vec::new() }));
+        for line in pixels.chunks_mut(width) {
+            for (tile, part) in tiles[first..].iter_mut().zip(line.chunks_mut(TILE)) {
+                tile.rows.push(part);
+            }
+        }
+    }
+    tiles
+}
+
+/// Composites over the background: premultiplied colour, and alpha 1 over a colour.
+fn over(light: Option<Radiance>, background: Background) -> [f32; 4] {
+    let ([r, g, b], t) = light.map_or(([0.0; 3], 1.0), |l| (l.color, l.transmittance));
+    match background {
+        Background::Transparent => [r, g, b, 1.0 - t],
+        Background::Color(behind) => {
+            let [br, bg, bb] = behind.map(|c| c as f32);
+            [r + t * br, g + t * bg, b + t * bb, 1.0]
+        }
+    }
+}
+
+/// Fisher and Yates' shuffle.
+fn shuffle<T>(items: &mut [T], seed: u64) {
+    for i in (1..items.len()).rev() {
+        let j = super::march::hash(seed, i as u64) % (i as u64 + 1);
+        items.swap(i, j as usize);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        let (width, height) = (37, 21);
+        let mut image = Image::transparent(width, height);
+        let mut tiles = cut(image.pixels_mut(), width);
+        assert_eq!(tiles.len(), 6);
+        shuffle(&mut tiles, 7);
+        for tile in &mut tiles {
+            for (y, row) in tile.rows.iter_mut().enumerate() {
+                for (x, pixel) in row.iter_mut().enumerate() {
+                    pixel[0] += 1.0;
+                    pixel[1] = ((tile.row + y) * width + tile.column + x) as f32;
+                }
+            }
+        }
+        for (i, pixel) in image.pixels().iter().enumerate() {
+            assert_eq!(*pixel, [1.0, i as f32, 0.0, 0.0], "pixel {i}");
+        }
+    }
+
+    #[test]
+    fn a_background_is_seen_through_what_is_left() {
+        let light = Some(Radiance { color: [0.5, 0.0, 0.0], transmittance: 0.25, samples: 0 });
+        assert_eq!(over(light, Background::Transparent), [0.5, 0.0, 0.0, 0.75]);
+        assert_eq!(over(light, Background::Color([1.0, 1.0, 0.0])), [0.75, 0.25, 0.0, 1.0]);
+        assert_eq!(over(None, Background::Color([1.0, 0.5, 0.0])), [1.0, 0.5, 0.0, 1.0]);
+        assert_eq!(over(None, Background::Transparent), [0.0; 4]);
+    }
+}
