@@ -71,8 +71,8 @@ struct PipelineArguments {
     pipeline: PathBuf,
 
     /// Set a key of the pipeline, such as `camera.azimuth=25`; the value is YAML. May be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
-    set: Vec<(String, String)>,
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
 
     /// Size of the picture in pixels, short for `--set image.size=[W,H]`
     #[arg(long, value_name = "WxH", value_parser = size)]
@@ -81,8 +81,8 @@ struct PipelineArguments {
 
 impl PipelineArguments {
     /// The overrides in the order in which they apply.
-    fn overrides(&self) -> Vec<(String, String)> {
-        let size = self.size.map(|[w, h]| ("image.size".to_string(), format!("[{w}, {h}]")));
+    fn overrides(&self) -> Vec<String> {
+        let size = self.size.map(|[w, h]| format!("image.size=[{w}, {h}]"));
         self.set.iter().cloned().chain(size).collect()
     }
 }
@@ -127,13 +127,6 @@ fn limit_threads(threads: Option<u16>) -> Result<()> {
     })
 }
 
-fn assignment(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_string(), value.to_string())),
-        _ => Err("expected KEY=VALUE, such as camera.azimuth=25".to_string()),
-    }
-}
-
 fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
     match sides {
@@ -166,8 +159,7 @@ mod tests {
             "x=1",
         ]);
         let Command::Render(render) = read.expect("a valid command line").command else { panic!("not render") };
-        let expected = [("a.b", "c=d"), ("x", "1"), ("image.size", "[640, 480]")];
-        assert_eq!(render.pipeline.overrides(), expected.map(|(k, v)| (k.to_string(), v.to_string())));
+        assert_eq!(render.pipeline.overrides(), ["a.b=c=d", "x=1", "image.size=[640, 480]"]);
     }
 
     #[test]
