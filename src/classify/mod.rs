@@ -10,8 +10,8 @@ mod one_d;
 mod two_d;
 
 pub use axis::Axis;
-pub use one_d::OneD;
-pub use two_d::TwoD;
+pub use one_d::{Linear, OneD};
+pub use two_d::{Bilinear, TwoD};
 
 use crate::math::Real;
 use crate::transfer::{Optics, TransferFunction};

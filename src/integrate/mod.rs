@@ -5,14 +5,16 @@
 
 mod chord;
 mod empty_space;
+pub mod exact;
 mod march;
+mod reference;
 mod select;
 mod shade;
 mod tiles;
 
 use std::fmt;
 
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
 use crate::image::Image;
 use crate::plan::Method;
 use crate::scene::Scene;
@@ -28,10 +30,12 @@ pub struct Rendered {
 }
 
 /// What a picture took; the same for any number of threads and any tile order.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Statistics {
-    /// Places where the transfer function was evaluated.
+    /// Places where the transfer function was evaluated, or pieces integrated.
     pub samples: u64,
+    /// Largest bound on the error of a channel of a pixel (linear, premultiplied), where the method proves one.
+    pub error_bound: Option<f64>,
     /// Rays that met the volume.
     pub rays: u64,
     /// The kernel, such as `march/i16/tf2d/lit`.
@@ -59,8 +63,8 @@ pub type Progress<'a> = &'a (dyn Fn(usize) + Sync);
 /// Renders a scene.
 ///
 /// # Errors
-/// `Fault::Spec` for settings that are no numbers, `Fault::Limit` for a step so small that a picture would take for ever,
-/// `Fault::Unsupported` for a method that is not implemented.
+/// `Fault::Spec` for settings that are no usable numbers, `Fault::Limit` for a step so small that a picture would take for
+/// ever.
 pub fn render(volume: &Volume, scene: &Scene, method: &Method, progress: Progress<'_>) -> Result<Rendered> {
     render_scheduled(volume, scene, method, Schedule::default(), progress)
 }
@@ -76,17 +80,14 @@ pub fn render_scheduled(
     schedule: Schedule,
     progress: Progress<'_>,
 ) -> Result<Rendered> {
+    let frame = Frame { volume, scene, schedule, progress };
     match method {
         Method::March(settings) => {
             march::check(settings, volume.grid())?;
-            select::march(&Frame { volume, scene, schedule, progress }, settings)
+            select::march(&frame, settings)
         }
-        Method::Exact(_) | Method::Reference => {
-            Err(Error::new(Fault::Unsupported, "this method of integration is not implemented")
-                .element("integrate")
-                .found(format!("{method:?}"))
-                .remedy("integrate with `march`"))
-        }
+        Method::Exact(settings) => exact::render(&frame, settings),
+        Method::Reference => Ok(reference::render(&frame)),
     }
 }
 

@@ -57,6 +57,7 @@ fn run<V: Voxel, C: Classifier<f32>, S: Shader>(
     let kernel = Kernel { field, magnitude, units, classifier, shader, empty_space };
     let (image, tally) = kernel.render(frame, settings);
     let name = KernelName { method: "march", voxel: V::NAME, reads_gradient: C::READS_GRADIENT, shader: S::NAME };
-    let statistics = Statistics { samples: tally.samples, rays: tally.rays, kernel: name.to_string() };
+    let statistics =
+        Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel: name.to_string() };
     Ok(Rendered { image, statistics })
 }

@@ -21,13 +21,33 @@ pub(super) struct Radiance {
     pub(super) transmittance: f32,
     /// Places where the transfer function was evaluated.
     pub(super) samples: u64,
+    /// Bound on the error of a channel; 0 where the method proves none.
+    pub(super) error_bound: f64,
 }
 
 /// Sums over a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Tally {
     pub(super) samples: u64,
     pub(super) rays: u64,
+    /// The largest of a ray.
+    pub(super) error_bound: f64,
+}
+
+impl Tally {
+    fn count(&mut self, light: &Radiance) {
+        self.rays += 1;
+        self.samples += light.samples;
+        self.error_bound = self.error_bound.max(light.error_bound);
+    }
+
+    fn plus(self, other: Tally) -> Tally {
+        Tally {
+            samples: self.samples + other.samples,
+            rays: self.rays + other.rays,
+            error_bound: self.error_bound.max(other.error_bound),
+        }
+    }
 }
 
 /// A tile: its place, and its rows in the picture.
@@ -58,15 +78,14 @@ pub(super) fn render<W>(
             for (y, row) in tile.rows.iter_mut().enumerate() {
                 for (x, out) in row.iter_mut().enumerate() {
                     let light = pixel(scratch, tile.column + x, tile.row + y);
-                    tally.rays += u64::from(light.is_some());
-                    tally.samples += light.map_or(0, |l| l.samples);
+                    light.iter().for_each(|l| tally.count(l));
                     *out = over(light, frame.scene.background);
                 }
             }
             (frame.progress)(tile.rows.iter().map(|row| row.len()).sum());
             tally
         })
-        .reduce(Tally::default, |a, b| Tally { samples: a.samples + b.samples, rays: a.rays + b.rays });
+        .reduce(Tally::default, Tally::plus);
     (image, tally)
 }
 
@@ -130,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_background_is_seen_through_what_is_left() {
-        let light = Some(Radiance { color: [0.5, 0.0, 0.0], transmittance: 0.25, samples: 0 });
+        let light = Some(Radiance { color: [0.5, 0.0, 0.0], transmittance: 0.25, ..Radiance::default() });
         assert_eq!(over(light, Background::Transparent), [0.5, 0.0, 0.0, 0.75]);
         assert_eq!(over(light, Background::Color([1.0, 1.0, 0.0])), [0.75, 0.25, 0.0, 1.0]);
         assert_eq!(over(None, Background::Color([1.0, 0.5, 0.0])), [1.0, 0.5, 0.0, 1.0]);

@@ -65,6 +65,17 @@ impl Shading {
         })
     }
 
+    /// The largest values that the two factors of the definition can take in any channel: of the emission, and of the
+    /// extinction.
+    pub fn largest_factors(&self) -> (f64, f64) {
+        let light: [f64; 3] = self.lights.iter().fold([0.0; 3], |sum, light| {
+            let (Light::Headlight { color } | Light::Directional { color, .. }) = light;
+            std::array::from_fn(|c| sum[c] + color[c])
+        });
+        let brightest = light.into_iter().fold(0.0, f64::max);
+        (self.ambient + self.diffuse * brightest, self.specular * brightest)
+    }
+
     /// The factors of the definition at a gradient `g` (HU/mm) on a ray of this direction:
     /// `(ambient + diffuse · Σ color · D, specular · Σ color · S)`, each linear RGB.
     pub fn factors(&self, gradient_per_mm: DVec3, ray_direction: DVec3) -> ([f64; 3], [f64; 3]) {

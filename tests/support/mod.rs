@@ -1,5 +1,7 @@
 //! What tests share.
 
+pub(crate) mod scenes;
+
 use std::path::PathBuf;
 
 /// A file or folder of the public scans, or `None`, with a note on stderr, where `PELLUCID_DATA` does not name them.

@@ -46,7 +46,7 @@ impl<V: Voxel, C: Classifier<f32>, S: Shader> Kernel<'_, V, C, S> {
                 }
             }
             let Light { color, transmittance, .. } = walk.light;
-            Some(Radiance { color, transmittance, samples: walk.samples })
+            Some(Radiance { color, transmittance, samples: walk.samples, error_bound: 0.0 })
         })
     }
 

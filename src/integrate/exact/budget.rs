@@ -1,0 +1,45 @@
+//! How much error a ray may make, and how much it has made.
+
+/// Shares of the tolerance: pieces by what they absorb, pieces by their length, the rest of a ray that is cut short,
+/// and rounding.
+const BY_ABSORPTION: f64 = 0.55;
+const BY_LENGTH: f64 = 0.15;
+const PIECES_AND_REST: f64 = 0.95;
+
+/// The error account of one ray.
+///
+/// A piece with transmittance `T` in front of it that absorbs `A` adds `T · error`. The account allows, at any point of the
+/// ray, `BY_ABSORPTION · tolerance · (1 − T)` plus `BY_LENGTH · tolerance ·` the fraction of the ray behind it; both grow
+/// along the ray, the first to at most its share since `Σ T A = 1 − T_end ≤ 1`. What a piece leaves unspent later ones may
+/// spend, and what pieces leave unspent the end of the ray may: a ray stops as soon as what is left of it cannot make the
+/// total exceed the tolerance.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Budget {
+    tolerance: f64,
+    spent: f64,
+}
+
+impl Budget {
+    pub(super) fn new(tolerance: f64) -> Self {
+        Budget { tolerance, spent: 0.0 }
+    }
+
+    /// What may still be spent by pieces up to a point with this transmittance, this fraction of the ray behind it.
+    pub(super) fn left(&self, transmittance: f64, fraction: f64) -> f64 {
+        self.tolerance * (BY_ABSORPTION * (1.0 - transmittance) + BY_LENGTH * fraction) - self.spent
+    }
+
+    pub(super) fn spend(&mut self, error: f64) {
+        self.spent += error;
+    }
+
+    /// Whether a ray may end with an error of at most `rest`.
+    pub(super) fn may_end(&self, rest: f64) -> bool {
+        self.spent + rest <= PIECES_AND_REST * self.tolerance
+    }
+
+    /// Bound on the error of the ray, if it ends with an error of at most `rest`; rounding included.
+    pub(super) fn bound(&self, rest: f64) -> f64 {
+        self.spent + rest + (1.0 - PIECES_AND_REST) * self.tolerance
+    }
+}

@@ -1,0 +1,198 @@
+//! The cells that a ray passes, with its entry and exit in each cell's own coordinates.
+//!
+//! All crossings are computed from the ray's entry into the volume, in f64, and never accumulated, so that no error grows
+//! along the ray; inside a cell coordinates are in `[0, 1]`, and f32 is enough.
+
+use super::super::chord::Chord;
+use crate::scene::Ray;
+use crate::volume::Grid;
+
+/// A ray inside a volume.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct IndexRay {
+    chord: Chord,
+}
+
+/// The part of a ray inside one cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Segment {
+    /// Lower corner, voxel index.
+    pub(super) cell: [usize; 3],
+    /// Entry, in `[0, 1]³` of the cell.
+    pub(super) from: [f64; 3],
+    /// Exit, in `[0, 1]³` of the cell.
+    pub(super) to: [f64; 3],
+    /// Length, mm.
+    pub(super) length_mm: f64,
+    /// Distance of the exit from the ray's origin, mm.
+    pub(super) exit_mm: f64,
+}
+
+impl IndexRay {
+    /// The part of a ray inside the domain of a grid, or `None` if it misses it.
+    pub(super) fn clip(ray: &Ray, grid: &Grid) -> Option<Self> {
+        let mut chord = Chord::new(grid, *ray)?;
+        let (low, high) = grid.index_bounds();
+        chord.entry_index = chord.entry_index.clamp(low, high);
+        Some(IndexRay { chord })
+    }
+
+    /// Where it enters the domain, mm from its origin.
+    pub(super) fn enter_mm(&self) -> f64 {
+        self.chord.entry_mm
+    }
+
+    /// Where it leaves.
+    pub(super) fn exit_mm(&self) -> f64 {
+        self.chord.entry_mm + self.chord.length_mm
+    }
+
+    /// Length inside the domain, mm.
+    pub(super) fn length_mm(&self) -> f64 {
+        self.chord.length_mm
+    }
+
+    /// The cells of the ray, front to back; without gaps or overlaps, none of length 0.
+    pub(super) fn segments(self, grid: &Grid) -> Segments {
+        let dims = grid.dims();
+        let last_cell = dims.map(|n| n.saturating_sub(2));
+        let mut cell = [0; 3];
+        let mut next_mm = [f64::INFINITY; 3];
+        for axis in 0..3 {
+            let p = self.chord.entry_index[axis];
+            // On a face, the cell that the ray is about to pass.
+            let index = if self.chord.index_per_mm[axis] < 0.0 { p.ceil() - 1.0 } else { p.floor() };
+            cell[axis] = index.clamp(0.0, last_cell[axis] as f64) as usize;
+        }
+        let mut segments =
+            Segments { ray: self, last_cell, dims, cell, next_mm, at_mm: self.enter_mm(), exit_mm: self.exit_mm() };
+        for (axis, next) in next_mm.iter_mut().enumerate() {
+            *next = segments.crossing_mm(axis);
+        }
+        segments.next_mm = next_mm;
+        segments
+    }
+}
+
+/// Iterator over the [`Segment`]s of a ray.
+#[derive(Debug, Clone)]
+pub(super) struct Segments {
+    ray: IndexRay,
+    last_cell: [usize; 3],
+    dims: [usize; 3],
+    cell: [usize; 3],
+    /// Where the ray crosses the next face across each axis, mm from its origin.
+    next_mm: [f64; 3],
+    at_mm: f64,
+    exit_mm: f64,
+}
+
+impl Segments {
+    fn crossing_mm(&self, axis: usize) -> f64 {
+        let d = self.ray.chord.index_per_mm[axis];
+        let c = self.cell[axis];
+        let leaves_domain = if d < 0.0 { c == 0 } else { c >= self.last_cell[axis] };
+        if d == 0.0 || leaves_domain || self.dims[axis] == 1 {
+            return f64::INFINITY;
+        }
+        let face = (if d < 0.0 { c } else { c + 1 }) as f64;
+        self.ray.enter_mm() + (face - self.ray.chord.entry_index[axis]) / d
+    }
+
+    fn local(&self, mm: f64) -> [f64; 3] {
+        let p = self.ray.chord.index_at(mm - self.ray.enter_mm());
+        std::array::from_fn(|axis| (p[axis] - self.cell[axis] as f64).clamp(0.0, 1.0))
+    }
+}
+
+impl Iterator for Segments {
+    type Item = Segment;
+
+    #[inline]
+    fn next(&mut self) -> Option<Segment> {
+        while self.at_mm < self.exit_mm {
+            let [a, b, c] = self.next_mm;
+            let axis = if a <= b && a <= c {
+                0
+            } else if b <= c {
+                1
+            } else {
+                2
+            };
+            let exit_mm = self.next_mm[axis].min(self.exit_mm);
+            let segment = (exit_mm > self.at_mm).then(|| Segment {
+                cell: self.cell,
+                from: self.local(self.at_mm),
+                to: self.local(exit_mm),
+                length_mm: exit_mm - self.at_mm,
+                exit_mm,
+            });
+            self.at_mm = exit_mm.max(self.at_mm);
+            if self.next_mm[axis] < self.exit_mm {
+                if self.ray.chord.index_per_mm[axis] < 0.0 {
+                    self.cell[axis] -= 1;
+                } else {
+                    self.cell[axis] += 1;
+                }
+                self.next_mm[axis] = self.crossing_mm(axis);
+            }
+            if segment.is_some() {
+                return segment;
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    fn walk(origin: DVec3, direction: DVec3, dims: [usize; 3]) -> Vec<Segment> {
+        let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();
+        let ray = Ray { origin_mm: origin, direction: direction.normalize() };
+        IndexRay::clip(&ray, &grid).map(|r| r.segments(&grid).collect()).unwrap_or_default()
+    }
+
+    #[test]
+    fn segments_join_up_and_cover_the_ray() {
+        for (o, d) in [
+            (DVec3::new(-5.0, 1.3, 2.2), DVec3::new(1.0, 0.21, -0.13)),
+            (DVec3::new(9.0, 9.0, 9.0), DVec3::new(-1.0, -1.0, -1.0)),
+            (DVec3::new(2.0, 2.0, -4.0), DVec3::Z),
+            (DVec3::new(3.0, 0.0, 9.0), DVec3::new(0.0, 1e-13, -1.0)),
+        ] {
+            let segments = walk(o, d, [4, 5, 6]);
+            assert!(!segments.is_empty(), "{o} {d}");
+            for pair in segments.windows(2) {
+                let place =
+                    |s: &Segment, p: [f64; 3]| DVec3::from_array(std::array::from_fn(|a| p[a] + s.cell[a] as f64));
+                let gap = (place(&pair[0], pair[0].to) - place(&pair[1], pair[1].from)).length();
+                assert!(gap < 1e-12, "{o} {d}: a gap of {gap:e} between {:?} and {:?}", pair[0], pair[1]);
+            }
+            assert!(segments.iter().all(|s| s.cell[0] < 3 && s.cell[1] < 4 && s.cell[2] < 5), "inside the lattice");
+        }
+    }
+
+    #[test]
+    fn a_ray_along_the_last_face_stays_in_the_last_cell() {
+        let segments = walk(DVec3::new(3.0, 4.0, -1.0), DVec3::Z, [4, 5, 6]);
+        assert_eq!(segments.len(), 5);
+        assert!(segments.iter().all(|s| s.cell[..2] == [2, 3] && s.from[..2] == [1.0, 1.0]));
+    }
+
+    #[test]
+    fn one_voxel_axes_are_as_thick_as_their_spacing() {
+        let segments = walk(DVec3::new(1.5, 1.5, -9.0), DVec3::Z, [4, 4, 1]);
+        assert_eq!(segments.len(), 1);
+        assert!((segments[0].length_mm - 1.0).abs() < 1e-12, "{:?}", segments[0]);
+        assert!(walk(DVec3::ZERO, DVec3::X, [1, 1, 1]).len() == 1);
+    }
+
+    #[test]
+    fn rays_that_miss_or_look_away_have_no_segments() {
+        assert!(walk(DVec3::new(5.0, 5.0, 50.0), DVec3::Z, [4, 4, 4]).is_empty(), "behind the camera");
+        assert!(walk(DVec3::new(-1.0, 1.0, 0.0), DVec3::Y, [4, 4, 4]).is_empty(), "beside it");
+    }
+}

@@ -1,0 +1,90 @@
+//! Lattice values at the corners of a cell.
+
+use glam::DMat3;
+
+use crate::field::Voxel;
+use crate::math::Real;
+use crate::math::bernstein::{Cubic, trilinear_along};
+use crate::volume::{Rescale, Volume};
+
+use super::cells::Segment;
+
+/// Stored samples by voxel index, with what a gradient in HU/mm needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lattice<'a, V> {
+    samples: &'a [V],
+    dims: [usize; 3],
+    /// Step in `samples` from a voxel to its upper neighbour in a cell; 0 along an axis of one voxel.
+    steps: [usize; 3],
+    to_value_per_mm: DMat3,
+}
+
+impl<'a, V: Voxel> Lattice<'a, V> {
+    pub(super) fn new(volume: &Volume, samples: &'a [V]) -> Self {
+        let Rescale { slope, .. } = volume.rescale();
+        let dims = volume.grid().dims();
+        let [nx, ny, _] = dims;
+        let strides = [1, nx, nx * ny];
+        let steps = std::array::from_fn(|a| if dims[a] == 1 { 0 } else { strides[a] });
+        Lattice { samples, dims, steps, to_value_per_mm: volume.grid().gradient_to_per_mm() * slope }
+    }
+
+    /// Stored samples at the corners of a cell, x fastest.
+    #[inline(always)]
+    pub(super) fn corners<R: Real>(&self, [i, j, k]: [usize; 3]) -> [R; 8] {
+        let [nx, ny, _] = self.dims;
+        let base = i + nx * (j + ny * k);
+        let [sx, sy, sz] = self.steps;
+        std::array::from_fn(|c| real(self.samples[base + (c & 1) * sx + (c >> 1 & 1) * sy + (c >> 2) * sz]))
+    }
+
+    /// Difference per index step along an axis at a voxel: central, one-sided at the border, 0 along an axis of one voxel.
+    #[inline(always)]
+    fn difference<R: Real>(&self, voxel: [usize; 3], axis: usize) -> R {
+        let n = self.dims[axis];
+        if n == 1 {
+            return R::ZERO;
+        }
+        let [nx, ny, _] = self.dims;
+        let at = voxel[0] + nx * (voxel[1] + ny * voxel[2]);
+        let step = self.steps[axis];
+        let i = voxel[axis];
+        let (low, high) = (if i > 0 { at - step } else { at }, if i + 1 < n { at + step } else { at });
+        let difference = real::<R, V>(self.samples[high]) - real(self.samples[low]);
+        if i > 0 && i + 1 < n { R::from_f64(0.5) * difference } else { difference }
+    }
+
+    /// Gradients in HU/mm at the corners of a cell: three components of eight corners.
+    #[inline]
+    pub(super) fn gradients<R: Real>(&self, cell: [usize; 3]) -> [[R; 8]; 3] {
+        let m = self.to_value_per_mm.to_cols_array_2d();
+        let mut result = [[R::ZERO; 8]; 3];
+        for c in 0..8 {
+            let offset = [c & 1, c >> 1 & 1, c >> 2];
+            let voxel: [usize; 3] = std::array::from_fn(|a| (cell[a] + offset[a]).min(self.dims[a] - 1));
+            let per_index: [R; 3] = std::array::from_fn(|axis| self.difference(voxel, axis));
+            for (row, component) in result.iter_mut().enumerate() {
+                component[c] = (0..3).fold(R::ZERO, |s, col| R::from_f64(m[col][row]).mul_plus(per_index[col], s));
+            }
+        }
+        result
+    }
+}
+
+/// Gradient magnitudes at the corners of a cell from the gradients there.
+#[inline]
+pub(super) fn magnitudes<R: Real>(gradients: &[[R; 8]; 3]) -> [R; 8] {
+    let [x, y, z] = gradients;
+    std::array::from_fn(|c| (x[c] * x[c] + y[c] * y[c] + z[c] * z[c]).sqrt())
+}
+
+/// The trilinear interpolant of corner values along a segment.
+#[inline(always)]
+pub(super) fn along<R: Real>(corners: &[R; 8], segment: &Segment) -> Cubic<R> {
+    trilinear_along(corners, segment.from.map(R::from_f64), segment.to.map(R::from_f64))
+}
+
+#[inline(always)]
+fn real<R: Real, V: Voxel>(stored: V) -> R {
+    R::from_f32(stored.to_f32())
+}

@@ -1,0 +1,179 @@
+//! One ray, cell by cell and piece by piece, within its budget.
+
+use crate::field::Voxel;
+use crate::math::Real;
+use crate::scene::{Ray, Scene};
+use crate::transfer::Side;
+use crate::volume::Grid;
+
+use super::budget::Budget;
+use super::cells::IndexRay;
+use super::lattice::{Lattice, along};
+use super::medium::Medium;
+use super::shade::Shader;
+use super::splits::Splits;
+
+/// A piece is not halved below this fraction of a segment; what it then costs is charged to the bound.
+const SMALLEST_PIECE: f64 = 1.0 / (1u64 << 30) as f64;
+
+/// What a ray brings.
+#[derive(Debug, Clone, Copy)]
+pub struct Traced {
+    /// Light towards the eye from the volume, linear RGB.
+    pub radiance: [f64; 3],
+    /// What is left of light from behind the volume.
+    pub transmittance: f64,
+    /// Proven bound on the error of a channel of `radiance` and of `transmittance`, rounding estimated.
+    pub bound: f64,
+    /// Pieces integrated, those rejected included.
+    pub pieces: u64,
+}
+
+/// What all rays of a frame share.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame<'a, V, M> {
+    pub(super) grid: &'a Grid,
+    pub(super) lattice: Lattice<'a, V>,
+    pub(super) medium: M,
+    pub(super) tolerance: f64,
+    pub(super) brightest: Brightest,
+}
+
+/// Bounds on the light that the rest of a ray may bring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Brightest {
+    /// Of emission over extinction before shading; infinite if something emits without absorbing.
+    pub(super) color: f64,
+    /// Of shaded emission over extinction; infinite if something emits without absorbing.
+    pub(super) per_absorbed: f64,
+    /// Of shaded emission, 1/mm.
+    pub(super) per_mm: f64,
+}
+
+impl Brightest {
+    /// Bounds for a scene. Between knots σ and q are bilinear, so what holds at the corners of a patch holds inside it.
+    pub(super) fn of(scene: &Scene) -> Self {
+        let tf = &scene.transfer_function;
+        let (mut color, mut emission, mut extinction) = (0.0f64, 0.0f64, 0.0f64);
+        for v in tf.value_knots() {
+            for g in tf.gradient_knots() {
+                for (v_side, g_side) in
+                    [Side::Left, Side::Right].into_iter().flat_map(|v| [(v, Side::Left), (v, Side::Right)])
+                {
+                    let optics = tf.evaluate_side(v, v_side, g, g_side);
+                    let q = optics.emission_per_mm.into_iter().fold(0.0, f64::max);
+                    emission = emission.max(q);
+                    extinction = extinction.max(optics.extinction_per_mm);
+                    if q > 0.0 {
+                        color = color.max(q / optics.extinction_per_mm);
+                    }
+                }
+            }
+        }
+        let (reflected, highlight) = scene.shading.as_ref().map_or((1.0, 0.0), |s| s.largest_factors());
+        // A product of ∞ and 0 would be NaN.
+        let per_absorbed = if reflected > 0.0 { color * reflected } else { 0.0 };
+        Brightest {
+            color,
+            per_absorbed: per_absorbed + highlight,
+            per_mm: emission * reflected + extinction * highlight,
+        }
+    }
+
+    /// Bound on the error of a channel if a ray is cut short at a transmittance, `rest_mm` before its end.
+    fn of_rest(&self, transmittance: f64, rest_mm: f64) -> f64 {
+        transmittance * self.per_absorbed.min(self.per_mm * rest_mm).max(1.0)
+    }
+}
+
+impl<V: Voxel, M> Frame<'_, V, M> {
+    /// Traces one ray.
+    pub(super) fn trace<R: Real, S: Shader<R>>(&self, ray: &Ray, shader: &S, splits: &mut Splits<R>) -> Option<Traced>
+    where
+        M: Medium<R>,
+    {
+        let inside = IndexRay::clip(ray, self.grid)?;
+        let mut light =
+            Front { radiance: [0.0; 3], transmittance: 1.0, budget: Budget::new(self.tolerance), pieces: 0 };
+        for segment in inside.segments(self.grid) {
+            let stored = self.lattice.corners(segment.cell);
+            let Some(fields) = self.medium.fields(&stored, &segment, || self.lattice.gradients(segment.cell)) else {
+                continue;
+            };
+            let shading = shader.cell(|| self.lattice.gradients(segment.cell).map(|c| along(&c, &segment)));
+            splits.clear();
+            self.medium.cut(&fields, splits);
+            shader.cut(&shading, splits);
+            splits.sorted();
+            let front_mm = segment.exit_mm - segment.length_mm;
+            for i in 1..splits.len() {
+                let ends = [splits.get(i - 1), splits.get(i)];
+                light.pass(ends, |part| {
+                    let length_mm = R::from_f64(segment.length_mm) * (part[1] - part[0]);
+                    let integral = self.medium.integrate(&fields, part, length_mm, shader, &shading)?;
+                    let at_mm = front_mm + part[1].to_f64() * segment.length_mm;
+                    Some((integral, (at_mm - inside.enter_mm()) / inside.length_mm()))
+                });
+            }
+            let rest = self.brightest.of_rest(light.transmittance, inside.exit_mm() - segment.exit_mm);
+            if light.budget.may_end(rest) {
+                return Some(light.ended(rest));
+            }
+        }
+        Some(light.ended(0.0))
+    }
+}
+
+/// Light and error gathered so far, front to back.
+struct Front {
+    radiance: [f64; 3],
+    transmittance: f64,
+    budget: Budget,
+    pieces: u64,
+}
+
+impl Front {
+    /// Passes the part of a segment between two cuts, in as few pieces as the budget allows. `integrate` gives the integral
+    /// over a piece and the fraction of the ray that its end leaves behind, or `None` if nothing happens on it.
+    #[inline(always)]
+    fn pass<R: Real>(
+        &mut self,
+        [start, end]: [R; 2],
+        integrate: impl Fn([R; 2]) -> Option<(super::piece::Integral<R>, f64)>,
+    ) {
+        let (mut from, mut to) = (start, end);
+        while from < end {
+            let Some((integral, fraction)) = integrate([from, to]) else { return };
+            self.pieces += 1;
+            let t = self.transmittance;
+            let next = t - t * integral.absorbed.to_f64();
+            let error = t * integral.error.to_f64();
+            let left = self.budget.left(next, fraction);
+            let length = to - from;
+            if error > left && length.to_f64() > SMALLEST_PIECE {
+                // The error falls with the cube of the length, what is allowed with the length.
+                let shrink = (0.9 * (left / error).max(0.0).sqrt()).clamp(0.05, 0.5);
+                to = from + length * R::from_f64(shrink);
+                continue;
+            }
+            for (sum, &x) in self.radiance.iter_mut().zip(&integral.radiance) {
+                *sum += t * x.to_f64();
+            }
+            self.transmittance = next;
+            self.budget.spend(error);
+            from = to;
+            // The next piece probably fares like this one, but is not left a sliver.
+            let grown = length * R::from_f64(1.5);
+            to = if end - from <= grown { end } else { from + grown };
+        }
+    }
+
+    fn ended(self, rest: f64) -> Traced {
+        Traced {
+            radiance: self.radiance,
+            transmittance: self.transmittance,
+            bound: self.budget.bound(rest),
+            pieces: self.pieces,
+        }
+    }
+}

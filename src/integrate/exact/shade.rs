@@ -1,0 +1,344 @@
+//! Levoy's shading along a piece, enclosed between linear functions with a proven error.
+//!
+//! Where the interpolated gradient `g(u)` keeps away from 0, its direction `n = g/|g|` is smooth, and over a piece with
+//! parameter `u ∈ [0, 1]`, with `G = max|g′|`, `M = max|g″|`, `ρ = min|g|` and `a = G/ρ`:
+//!
+//! ```text
+//! |n′| ≤ a,     |n″| ≤ (2/√3) a² + M/ρ
+//! ```
+//!
+//! (`n′ = P g′/|g|` with the projection `P` across `n`; differentiating once more and maximising over the direction of `g′`
+//! gives the constant.) From these follow bounds on the second derivative of `w(|g|) · d(n·l)` and of `w(|g|) · d(n·h)^p`,
+//! and a function with `|f″| ≤ K` is within `K/8` of the line through its ends. All maxima and minima come from Bernstein
+//! coefficients, so they hold for the whole piece. Cuts at the roots of `g·l`, cubics too, keep the kinks of `d` out of the
+//! pieces. Where `g` may vanish, the factors' ranges bound the error instead.
+
+use glam::DVec3;
+
+use crate::math::Real;
+use crate::math::bernstein::{Cubic, restrict, value};
+use crate::scene::Shading;
+
+use super::piece::LinearFactors;
+use super::splits::Splits;
+
+/// How emission is shaded; chosen by type.
+pub(super) trait Shader<R: Real> {
+    /// Whether there is anything to do.
+    const LIT: bool;
+    /// What it keeps of a segment.
+    type Cell;
+
+    /// Prepares a segment; `gradient` gives the gradient along it, HU/mm.
+    fn cell(&self, gradient: impl FnOnce() -> [Cubic<R>; 3]) -> Self::Cell;
+    /// Cuts the segment at kinks.
+    fn cut(&self, cell: &Self::Cell, splits: &mut Splits<R>);
+    /// Factors over the part `[from, to]` of the segment, which lies between cuts.
+    fn factors(&self, cell: &Self::Cell, from: R, to: R) -> LinearFactors<R>;
+    /// Bound on `q/σ` of what is shaded.
+    fn largest_color(&self) -> R;
+}
+
+/// Emission as it is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Unlit;
+
+impl<R: Real> Shader<R> for Unlit {
+    const LIT: bool = false;
+    type Cell = ();
+
+    #[inline(always)]
+    fn cell(&self, _: impl FnOnce() -> [Cubic<R>; 3]) {}
+    #[inline(always)]
+    fn cut(&self, (): &(), _: &mut Splits<R>) {}
+    #[inline(always)]
+    fn factors(&self, (): &(), _: R, _: R) -> LinearFactors<R> {
+        let (one, none) = ([[R::ONE; 3]; 2], [[R::ZERO; 3]; 2]);
+        LinearFactors { reflected: one, highlight: none, reflected_error: R::ZERO, highlight_error: R::ZERO }
+    }
+    #[inline(always)]
+    fn largest_color(&self) -> R {
+        R::ONE
+    }
+}
+
+/// Shading of [`Shading`] on one ray.
+#[derive(Debug, Clone)]
+pub(super) struct Lit<R> {
+    ambient: R,
+    diffuse: R,
+    specular: R,
+    shininess: R,
+    two_sided: bool,
+    /// g₀², (HU/mm)².
+    soft_square: R,
+    lights: Vec<RayLight<R>>,
+    largest_color: R,
+}
+
+/// A light as one ray sees it.
+#[derive(Debug, Clone, Copy)]
+struct RayLight<R> {
+    towards: [R; 3],
+    half: [R; 3],
+    color: [R; 3],
+}
+
+impl<R: Real> Lit<R> {
+    /// The shading on a ray of this direction, of colours up to `largest_color`.
+    pub(super) fn new(shading: &Shading, direction: DVec3, largest_color: f64) -> Self {
+        let vector = |v: DVec3| v.to_array().map(R::from_f64);
+        let lights = shading.directions(direction).map(|(towards, half, color)| RayLight {
+            towards: vector(towards),
+            half: vector(half),
+            color: color.map(R::from_f64),
+        });
+        Lit {
+            ambient: R::from_f64(shading.ambient),
+            diffuse: R::from_f64(shading.diffuse),
+            specular: R::from_f64(shading.specular),
+            shininess: R::from_f64(shading.shininess),
+            two_sided: shading.two_sided,
+            soft_square: R::from_f64(shading.soft_gradient_per_mm * shading.soft_gradient_per_mm),
+            lights: lights.collect(),
+            largest_color: R::from_f64(largest_color),
+        }
+    }
+
+    /// How much of a light reaches the eye from a gradient: `w d(n·l)` and `w d(n·h)^p`. `facing` is the sign of `n·l` on
+    /// the piece: at its ends, where `n·l` may be 0, it says from which side.
+    #[inline]
+    fn light(&self, light: &RayLight<R>, g: &[R; 3], facing: bool) -> [R; 2] {
+        let square = dot(g, g);
+        if square == R::ZERO || !(facing || self.two_sided) {
+            return [R::ZERO; 2];
+        }
+        let fade = square / (square + self.soft_square);
+        let inverse = R::ONE / square.sqrt();
+        // n = −g/|g|.
+        let (lambert, shine) = (-dot(g, &light.towards) * inverse, -dot(g, &light.half) * inverse);
+        let clamp = |x: R| if self.two_sided { x.abs() } else { x.max(R::ZERO) };
+        let gloss = if self.specular == R::ZERO { R::ZERO } else { clamp(shine).min(R::ONE).powf(self.shininess) };
+        [fade * clamp(lambert), fade * gloss]
+    }
+}
+
+#[inline(always)]
+fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn along_light<R: Real>(g: &[Cubic<R>; 3], l: &[R; 3]) -> Cubic<R> {
+    std::array::from_fn(|k| g[0][k] * l[0] + g[1][k] * l[1] + g[2][k] * l[2])
+}
+
+impl<R: Real> Shader<R> for Lit<R> {
+    const LIT: bool = true;
+    type Cell = [Cubic<R>; 3];
+
+    #[inline(always)]
+    fn cell(&self, gradient: impl FnOnce() -> [Cubic<R>; 3]) -> [Cubic<R>; 3] {
+        gradient()
+    }
+
+    fn cut(&self, g: &[Cubic<R>; 3], splits: &mut Splits<R>) {
+        for light in &self.lights {
+            splits.cut(&along_light(g, &light.towards), &[R::ZERO]);
+        }
+    }
+
+    fn factors(&self, g: &[Cubic<R>; 3], from: R, to: R) -> LinearFactors<R> {
+        let g: [Cubic<R>; 3] = std::array::from_fn(|a| restrict(&g[a], from, to));
+        let at = |k: usize| [g[0][k], g[1][k], g[2][k]];
+        let bounds = Variation::of(&g, self.soft_square);
+        let mut result = LinearFactors {
+            reflected: [[self.ambient; 3]; 2],
+            highlight: [[R::ZERO; 3]; 2],
+            reflected_error: R::ZERO,
+            highlight_error: R::ZERO,
+        };
+        for light in &self.lights {
+            // The normal is against the gradient.
+            let facing = value(&along_light(&g, &light.towards), R::from_f64(0.5)) < R::ZERO;
+            let ends = [self.light(light, &at(0), facing), self.light(light, &at(3), facing)];
+            for (end, [lambert, gloss]) in ends.iter().enumerate() {
+                for c in 0..3 {
+                    result.reflected[end][c] += self.diffuse * light.color[c] * *lambert;
+                    result.highlight[end][c] += self.specular * light.color[c] * *gloss;
+                }
+            }
+            if facing || self.two_sided {
+                let brightest = light.color[0].max(light.color[1]).max(light.color[2]);
+                let cosines = |v: &[R; 3]| [0, 3].map(|k| bounds.cosine(&at(k), v, self.two_sided));
+                result.reflected_error += self.diffuse * brightest * bounds.of_power(cosines(&light.towards), R::ONE);
+                if self.specular > R::ZERO {
+                    let gloss = bounds.of_power(cosines(&light.half), self.shininess);
+                    result.highlight_error += self.specular * brightest * gloss;
+                }
+            }
+        }
+        result
+    }
+
+    #[inline(always)]
+    fn largest_color(&self) -> R {
+        self.largest_color
+    }
+}
+
+/// How much the gradient's direction and fade can vary over a piece.
+#[derive(Debug, Clone, Copy)]
+struct Variation<R> {
+    /// False if the gradient may vanish: then nothing else holds but `fade`.
+    smooth: bool,
+    /// `a = max|g′| / min|g|`: bounds |n′|.
+    turn: R,
+    /// Bounds |n″|.
+    bend: R,
+    /// Bounds of `w` and of its first and second derivative.
+    fade: [R; 3],
+}
+
+impl<R: Real> Variation<R> {
+    fn of(g: &[Cubic<R>; 3], soft_square: R) -> Self {
+        let number = R::from_f64;
+        let at = |k: usize| [g[0][k], g[1][k], g[2][k]];
+        let norm = |v: [R; 3]| dot(&v, &v).sqrt();
+        let minus = |a: [R; 3], b: [R; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let d: [[R; 3]; 3] = std::array::from_fn(|k| minus(at(k + 1), at(k)));
+        let first = number(3.0) * norm(d[0]).max(norm(d[1])).max(norm(d[2]));
+        let second = number(6.0) * norm(minus(d[1], d[0])).max(norm(minus(d[2], d[1])));
+        let most = (0..4).fold(R::ZERO, |m, k| m.max(norm(at(k))));
+        // |g| is at least its component along any direction: take that of the mean of the ends.
+        let ends: [R; 3] = std::array::from_fn(|a| g[a][0] + g[a][3]);
+        let along = norm(ends);
+        let least = (0..4).fold(most, |m, k| m.min(dot(&at(k), &ends) / along));
+        let s = soft_square;
+        let most_fade = if most > R::ZERO { most * most / (most * most + s) } else { R::ZERO };
+        // A comparison with NaN, from a vanishing mean, is false.
+        let smooth = least > number(1e-3) * most;
+        if !smooth {
+            return Variation { smooth: false, turn: R::ZERO, bend: R::ZERO, fade: [most_fade, R::ZERO, R::ZERO] };
+        }
+        let (turn, wiggle) = (first / least, second / least);
+        // w = ρ²/(ρ²+s): dw/dρ = 2ρs/(ρ²+s)²,  d²w/dρ² = 2s(s−3ρ²)/(ρ²+s)³.
+        let denominator = least * least + s;
+        let slope = number(2.0) * most * s / (denominator * denominator);
+        let curvature = number(2.0) * s * s.max(number(3.0) * most * most) / (denominator * denominator * denominator);
+        let fade = [most_fade, slope * first, curvature * first * first + slope * (first * turn + second)];
+        Variation { smooth: true, turn, bend: number(1.154_700_6) * turn * turn + wiggle, fade }
+    }
+
+    /// `d(n·v)` at an end.
+    #[inline]
+    fn cosine(&self, g: &[R; 3], v: &[R; 3], two_sided: bool) -> R {
+        let square = dot(g, g);
+        if square == R::ZERO {
+            return R::ZERO;
+        }
+        let x = -dot(g, v) / square.sqrt();
+        if two_sided { x.abs() } else { x.max(R::ZERO) }
+    }
+
+    /// Largest distance of `w x^p` from the line through its ends, given the cosine `x` at both ends.
+    #[inline]
+    fn of_power(&self, cosines: [R; 2], p: R) -> R {
+        let number = R::from_f64;
+        let (low, high) = (cosines[0].min(cosines[1]), cosines[0].max(cosines[1]));
+        if !self.smooth {
+            return self.fade[0];
+        }
+        // No point is further than half the piece from an end.
+        let reach = number(0.5) * self.turn;
+        let (low, high) = ((low - reach).max(R::ZERO), (high + reach).min(R::ONE));
+        let crude = self.fade[0] * if p == R::ONE { high } else { high.powf(p) };
+        // |x′| is at most |n′| times the sine.
+        let speed = self.turn * (R::ONE - low * low).max(R::ZERO).sqrt();
+        let [w0, w1, w2] = self.fade;
+        let (f0, f1, f2) = if p == R::ONE {
+            (high, R::ONE, R::ZERO)
+        } else if p < number(2.0) {
+            // x^p has no bounded second derivative at 0.
+            return crude;
+        } else {
+            let high_2 = high.powf(p - number(2.0));
+            (high_2 * high * high, p * high_2 * high, p * (p - R::ONE) * high_2)
+        };
+        let second = w2 * f0 + number(2.0) * w1 * f1 * speed + w0 * (f2 * speed * speed + f1 * self.bend);
+        crude.min(number(0.125) * second)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Light;
+
+    fn shading(two_sided: bool, soft: f64) -> Shading {
+        Shading {
+            ambient: 0.1,
+            diffuse: 0.7,
+            specular: 0.3,
+            shininess: 20.0,
+            two_sided,
+            soft_gradient_per_mm: soft,
+            lights: vec![
+                Light::Headlight { color: [1.0, 0.9, 0.8] },
+                Light::Directional { towards: DVec3::new(0.3, -0.5, 0.8).normalize(), color: [0.2, 0.3, 0.9] },
+            ],
+        }
+    }
+
+    /// Pseudo-random numbers in [-1, 1].
+    fn random(seed: &mut u64) -> f64 {
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    #[test]
+    fn the_true_factors_are_within_the_enclosure() {
+        let mut seed = 7;
+        let mut tightest = 0.0f64;
+        for case in 0..4000 {
+            let definition = shading(case % 2 == 0, if case % 3 == 0 { 0.0 } else { 40.0 });
+            let direction = DVec3::new(random(&mut seed), random(&mut seed), random(&mut seed)).normalize();
+            let lit = Lit::<f64>::new(&definition, direction, 1.0);
+            // From nearly straight to wild.
+            let spread = 10f64.powf(1.5 * random(&mut seed) - 0.5) * 100.0;
+            let base: [f64; 3] = std::array::from_fn(|_| 100.0 * random(&mut seed));
+            let g: [Cubic<f64>; 3] =
+                std::array::from_fn(|a| std::array::from_fn(|_| base[a] + spread * random(&mut seed)));
+            let mut splits = Splits::default();
+            splits.clear();
+            lit.cut(&g, &mut splits);
+            let positions = splits.sorted().to_vec();
+            for pair in positions.windows(2).filter(|p| p[1] - p[0] > 1e-9) {
+                let f = lit.factors(&g, pair[0], pair[1]);
+                for i in 1..20 {
+                    let t = f64::from(i) / 20.0;
+                    let u = pair[0] + t * (pair[1] - pair[0]);
+                    let point = DVec3::from_array(std::array::from_fn(|a| value(&g[a], u)));
+                    let (reflected, highlight) = definition.factors(point, direction);
+                    for c in 0..3 {
+                        let linear = |ends: &[[f64; 3]; 2]| ends[0][c] + t * (ends[1][c] - ends[0][c]);
+                        let off = (linear(&f.reflected) - reflected[c]).abs();
+                        let shine_off = (linear(&f.highlight) - highlight[c]).abs();
+                        assert!(
+                            off <= f.reflected_error + 1e-12,
+                            "case {case}: diffuse off by {off}, bound {}",
+                            f.reflected_error
+                        );
+                        assert!(
+                            shine_off <= f.highlight_error + 1e-12,
+                            "case {case}: specular off by {shine_off}, bound {}",
+                            f.highlight_error
+                        );
+                        tightest = tightest.max(off / f.reflected_error);
+                    }
+                }
+            }
+        }
+        assert!(tightest > 0.2, "a bound that is never approached says little: {tightest}");
+    }
+}

@@ -1,0 +1,226 @@
+//! A ray through the lattice: where it enters each cell and leaves it.
+
+use glam::DVec3;
+
+use crate::scene::Ray;
+use crate::volume::Grid;
+
+/// A ray inside the domain, in voxel indices.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Path {
+    dims: [usize; 3],
+    /// Index at parameter 0.
+    origin: DVec3,
+    /// Index steps per mm.
+    step_per_mm: DVec3,
+    /// Where the path begins and ends, mm.
+    ends_mm: [f64; 2],
+}
+
+/// The part of a path in one cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Passage {
+    /// Lowest corner of the cell.
+    pub(super) cell: [usize; 3],
+    /// Where the path enters, from the cell's lowest corner, each in [0, 1].
+    pub(super) entry: [f64; 3],
+    /// Where it leaves.
+    pub(super) exit: [f64; 3],
+    /// Length, mm.
+    pub(super) length_mm: f64,
+}
+
+impl Path {
+    /// The part of a ray between `from_mm` and `to_mm` that lies in the domain, or `None` if it is empty or a point.
+    pub(super) fn new(grid: &Grid, ray: &Ray, from_mm: f64, to_mm: f64) -> Option<Path> {
+        // The parameter is counted from the point next to the domain's centre, so that a far origin costs no digits.
+        let center_mm = (grid.center_mm() - ray.origin_mm).dot(ray.direction);
+        let corner = grid.index_to_lps_mm().translation;
+        let start = DVec3::from_array(std::array::from_fn(|a| {
+            multiply_add(center_mm, ray.direction[a], ray.origin_mm[a], -corner[a])
+        }));
+        let to_index = grid.lps_mm_to_index().matrix3;
+        let (origin, step_per_mm) = (to_index * start, to_index * ray.direction);
+        let (low, high) = grid.index_bounds();
+        let (mut first, mut last) = (from_mm.max(0.0) - center_mm, to_mm - center_mm);
+        for a in 0..3 {
+            if step_per_mm[a] == 0.0 {
+                // Outside a slab along which the ray runs; inside, 0/0 must not be computed.
+                if !(low[a] <= origin[a] && origin[a] <= high[a]) {
+                    return None;
+                }
+                continue;
+            }
+            let x = (low[a] - origin[a]) / step_per_mm[a];
+            let y = (high[a] - origin[a]) / step_per_mm[a];
+            first = first.max(x.min(y));
+            last = last.min(x.max(y));
+        }
+        (first < last).then_some(Path { dims: grid.dims(), origin, step_per_mm, ends_mm: [first, last] })
+    }
+
+    /// The cells in order. Each crossing of a face is computed from the origin, never from the crossing before it.
+    pub(super) fn passages(&self) -> impl Iterator<Item = Passage> + '_ {
+        let mut faces: [Faces; 3] = std::array::from_fn(|a| Faces::new(self, a));
+        let [mut here, end] = self.ends_mm;
+        std::iter::from_fn(move || {
+            while here < end {
+                let next = faces.iter().fold(end, |t, f| t.min(f.next_mm));
+                for face in &mut faces {
+                    face.pass(next);
+                }
+                if next > here {
+                    let passage = self.passage(here, next);
+                    here = next;
+                    return Some(passage);
+                }
+            }
+            None
+        })
+    }
+
+    fn passage(&self, from_mm: f64, to_mm: f64) -> Passage {
+        let mut passage = Passage { cell: [0; 3], entry: [0.0; 3], exit: [0.0; 3], length_mm: to_mm - from_mm };
+        let middle = 0.5 * (from_mm + to_mm);
+        for a in 0..3 {
+            if self.dims[a] == 1 {
+                continue;
+            }
+            // The middle decides: it is as far from the faces as the path gets. Cells are half-open, the last is closed.
+            let highest = self.dims[a] - 2;
+            let cell = self.index(middle, a).floor().clamp(0.0, highest as f64);
+            passage.cell[a] = cell as usize;
+            passage.entry[a] = (self.index(from_mm, a) - cell).clamp(0.0, 1.0);
+            passage.exit[a] = (self.index(to_mm, a) - cell).clamp(0.0, 1.0);
+        }
+        passage
+    }
+
+    fn index(&self, s_mm: f64, axis: usize) -> f64 {
+        self.origin[axis] + s_mm * self.step_per_mm[axis]
+    }
+}
+
+/// `t·d + o + c` with one rounding error of its own: the product and sums are exact to twice the precision.
+fn multiply_add(t: f64, d: f64, o: f64, c: f64) -> f64 {
+    let (product, product_error) = (t * d, t.mul_add(d, -(t * d)));
+    let (first, first_error) = two_sum(o, c);
+    let (sum, sum_error) = two_sum(product, first);
+    sum + (sum_error + (product_error + first_error))
+}
+
+/// The rounded sum and its rounding error (Knuth).
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}
+
+/// The faces across one axis that lie ahead.
+#[derive(Debug, Clone, Copy)]
+struct Faces {
+    origin: f64,
+    step_per_mm: f64,
+    index: f64,
+    next_mm: f64,
+}
+
+impl Faces {
+    fn new(path: &Path, axis: usize) -> Self {
+        let (origin, step_per_mm) = (path.origin[axis], path.step_per_mm[axis]);
+        let mut faces = Faces { origin, step_per_mm, index: 0.0, next_mm: f64::INFINITY };
+        if path.dims[axis] > 1 && step_per_mm != 0.0 {
+            // One face too early, whatever the rounding; `pass` leaves behind what is not ahead.
+            faces.index = path.index(path.ends_mm[0], axis).round() - 2.0 * step_per_mm.signum();
+            faces.next_mm = faces.crossing_mm();
+            faces.pass(path.ends_mm[0]);
+        }
+        faces
+    }
+
+    fn crossing_mm(&self) -> f64 {
+        (self.index - self.origin) / self.step_per_mm
+    }
+
+    /// Leaves all faces up to `s_mm` behind.
+    fn pass(&mut self, s_mm: f64) {
+        while self.next_mm <= s_mm {
+            self.index += self.step_per_mm.signum();
+            self.next_mm = self.crossing_mm();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(dims: [usize; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<Path> {
+        let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();
+        let ray = Ray { origin_mm: origin.into(), direction: DVec3::from_array(direction).normalize() };
+        Path::new(&grid, &ray, 0.0, f64::INFINITY)
+    }
+
+    fn cells(path: &Path) -> Vec<[usize; 3]> {
+        path.passages().map(|p| p.cell).collect()
+    }
+
+    #[test]
+    fn passages_join_and_cover_the_path() {
+        let path = path([5, 7, 4], [-3.0, 1.3, -2.2], [0.7, 0.5, 0.6]).unwrap();
+        let passages: Vec<Passage> = path.passages().collect();
+        let length: f64 = passages.iter().map(|p| p.length_mm).sum();
+        assert!((length - (path.ends_mm[1] - path.ends_mm[0])).abs() < 1e-14, "found {length}");
+        for pair in passages.windows(2) {
+            for a in 0..3 {
+                let (leave, enter) =
+                    (pair[0].cell[a] as f64 + pair[0].exit[a], pair[1].cell[a] as f64 + pair[1].entry[a]);
+                assert!((leave - enter).abs() < 1e-14, "axis {a}: left at {leave}, entered at {enter}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_diagonal_through_corners_passes_the_diagonal_cells_only() {
+        let path = path([4, 4, 4], [-1.0; 3], [1.0; 3]).unwrap();
+        let cells = cells(&path);
+        assert!(cells.starts_with(&[[0; 3]]) && cells.ends_with(&[[2; 3]]), "found {cells:?}");
+    }
+
+    #[test]
+    fn along_a_face_the_upper_cell_is_taken_and_along_the_last_face_the_last() {
+        assert_eq!(cells(&path([3, 3, 3], [-1.0, 1.0, 1.0], [1.0, 0.0, 0.0]).unwrap()), [[0, 1, 1], [1, 1, 1]]);
+        assert_eq!(cells(&path([3, 3, 3], [-1.0, 2.0, 0.0], [1.0, 0.0, 0.0]).unwrap()), [[0, 1, 0], [1, 1, 0]]);
+        assert!(path([3, 3, 3], [-1.0, 2.0 + 1e-9, 0.0], [1.0, 0.0, 0.0]).is_none(), "beyond the last face");
+    }
+
+    #[test]
+    fn axes_of_one_voxel_are_as_thick_as_their_spacing() {
+        let through = path([1, 1, 1], [0.2, 0.1, -9.0], [0.0, 0.0, 1.0]).unwrap();
+        let passages: Vec<Passage> = through.passages().collect();
+        assert_eq!(passages.len(), 1);
+        assert_eq!(passages[0].length_mm, 1.0);
+        assert!(path([1, 1, 1], [0.6, 0.1, -9.0], [0.0, 0.0, 1.0]).is_none());
+    }
+
+    #[test]
+    fn a_far_origin_costs_no_digits() {
+        let direction = DVec3::new(0.6, 0.0, 0.8);
+        let grid = Grid::axis_aligned([51, 51, 51], DVec3::ONE).unwrap();
+        let target = DVec3::new(20.0, 25.0, 30.0);
+        let near = Path::new(&grid, &Ray { origin_mm: target - 128.0 * direction, direction }, 0.0, 1e9).unwrap();
+        // A power of two as distance, so that the far origin itself is as exact as the near one can be.
+        let origin_mm = target - 1_048_576.0 * direction;
+        let far = Path::new(&grid, &Ray { origin_mm, direction }, 0.0, 1e9).unwrap();
+        let drift = (far.origin - near.origin).cross(near.step_per_mm).length();
+        assert!(drift < 2e-10, "the rays lie {drift:e} apart; rounding of the origin alone allows 1.2e-10");
+    }
+
+    #[test]
+    fn behind_and_beyond_are_empty() {
+        assert!(path([3, 3, 3], [5.0, 1.0, 1.0], [1.0, 0.0, 0.0]).is_none(), "the volume is behind");
+        assert!(path([3, 3, 3], [f64::NAN, 1.0, 1.0], [1.0, 0.0, 0.0]).is_none(), "no number");
+        let inside = path([3, 3, 3], [1.5, 1.0, 1.0], [1.0, 0.0, 0.0]).unwrap();
+        assert_eq!(inside.passages().map(|p| p.length_mm).sum::<f64>(), 0.5);
+    }
+}

@@ -1,0 +1,53 @@
+//! Shading along a ray: its factors at a point, and where along a passage they are not smooth.
+
+use glam::DVec3;
+
+use super::bernstein::{Bernstein, Cubic};
+use super::patches::Channels;
+use super::roots::{critical_points, zeros};
+use super::splits::Splits;
+use crate::scene::Shading;
+
+/// Shading on rays of one direction.
+#[derive(Debug, Clone)]
+pub(super) struct ShadedRay<'a> {
+    shading: &'a Shading,
+    direction: DVec3,
+    /// The vectors whose product with the normal is bent at zero: towards each light, and halfway from it to the eye.
+    bends: Vec<DVec3>,
+}
+
+impl<'a> ShadedRay<'a> {
+    /// Shading on rays of this direction.
+    pub(super) fn new(shading: &'a Shading, direction: DVec3) -> Self {
+        let mut bends = Vec::new();
+        for (towards, half, _) in shading.directions(direction) {
+            bends.push(towards);
+            if half != towards {
+                bends.push(half);
+            }
+        }
+        ShadedRay { shading, direction, bends }
+    }
+
+    /// Adds the cuts where shading is bent, and those where the gradient is small and its direction turns quickly.
+    pub(super) fn add_bends(&self, gradient: &[Cubic; 3], splits: &mut Splits) {
+        for bend in &self.bends {
+            let product: Cubic = Bernstein(std::array::from_fn(|i| {
+                bend.x * gradient[0].0[i] + bend.y * gradient[1].0[i] + bend.z * gradient[2].0[i]
+            }));
+            splits.add(zeros(&product.0).as_slice());
+            splits.add(critical_points(&product.0).as_slice());
+        }
+        let squares = gradient.map(|g| g.times(&g));
+        let square: [f64; 7] = std::array::from_fn(|i| squares[0].0[i] + squares[1].0[i] + squares[2].0[i]);
+        splits.add(critical_points(&square).as_slice());
+    }
+
+    /// Extinction and shaded emission from σ and q at a point with this gradient.
+    pub(super) fn shade(&self, [extinction, emission @ ..]: Channels, gradient_per_mm: DVec3) -> Channels {
+        let (reflected, highlight) = self.shading.factors(gradient_per_mm, self.direction);
+        let [r, g, b] = std::array::from_fn(|c| emission[c] * reflected[c] + extinction * highlight[c]);
+        [extinction, r, g, b]
+    }
+}

@@ -1,0 +1,133 @@
+//! Integrators as written.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How the volume rendering integral is computed. A name alone takes all its defaults.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum IntegrateSpec {
+    /// Within a tolerance, without a step size.
+    Exact(ExactSpec),
+    /// Fixed steps, as the textbooks and VTK do it.
+    March(MarchSpec),
+    /// The oracle in f64, for every pixel: slow.
+    Reference,
+}
+
+/// Settings of the exact integrator.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExactSpec {
+    /// Largest error of a channel of a pixel, linear and premultiplied; 1/255 by default, above 0 and below 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+}
+
+/// Settings of the marching integrator.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MarchSpec {
+    /// Distance between samples, mm, above 0. Not together with `step_voxels`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_mm: Option<f64>,
+    /// Distance between samples in units of the smallest spacing, above 0; 0.5 by default. Not together with `step_mm`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_voxels: Option<f64>,
+    /// Where in an interval its sample lies; `midpoint` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rule: Option<RuleName>,
+    /// Direction of compositing; `front-to-back` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order: Option<OrderName>,
+    /// Colour as it is composited; `associated` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colors: Option<ColorsName>,
+    /// What a sample's emission is measured by; `per-length` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emission: Option<EmissionName>,
+    /// Where the intervals of neighbouring rays lie; `per-ray` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lattice: Option<LatticeName>,
+    /// Offset of the lattice per pixel; none by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jitter: Option<JitterSpec>,
+    /// A front-to-back ray stops where less than this transmittance is left; 0, never, by default. Below 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1))]
+    pub termination_transmittance: Option<f64>,
+}
+
+/// Offset of the sample lattice per pixel, the same for any number of threads.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JitterSpec {
+    /// Seed; 0 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// Distribution over the picture; `white` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kind: Option<JitterKindName>,
+}
+
+/// Where in an interval its sample lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum RuleName {
+    /// At its start: first order.
+    Left,
+    /// In its middle: second order.
+    Midpoint,
+    /// At both ends, averaged: second order.
+    Trapezoid,
+}
+
+/// Direction of compositing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OrderName {
+    /// From the eye.
+    FrontToBack,
+    /// Towards the eye.
+    BackToFront,
+}
+
+/// Colour as it is composited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColorsName {
+    /// Multiplied by opacity.
+    Associated,
+    /// Divided out and multiplied in again.
+    Straight,
+}
+
+/// What a sample's emission is measured by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum EmissionName {
+    /// By length, independent of the step.
+    PerLength,
+    /// By sample, as renderers without colour correction do.
+    PerSample,
+}
+
+/// Where the intervals of neighbouring rays lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LatticeName {
+    /// From each ray's own entry into the volume.
+    PerRay,
+    /// On planes across the line of sight.
+    ViewPlanes,
+}
+
+/// Distribution of the offsets over the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum JitterKindName {
+    /// Independent per pixel.
+    White,
+    /// Spread evenly over neighbouring pixels.
+    LowDiscrepancy,
+}
