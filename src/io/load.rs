@@ -30,7 +30,7 @@ const UNSUPPORTED: [(&str, &str); 8] = [
 /// whatever the reader finds.
 pub fn load(path: &Path, series: &SeriesChoice) -> Result<Scan> {
     match format_of(path)? {
-        Format::Dicom => dicom::read(path, series),
+        Format::Dicom => dicom::read(path, series, None),
         Format::Nrrd => nrrd::read(path),
     }
 }

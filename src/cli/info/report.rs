@@ -112,7 +112,7 @@ impl From<&Volume> for VolumeReport {
     fn from(volume: &Volume) -> Self {
         VolumeReport {
             dims: volume.grid().dims(),
-            index_to_lps_mm: volume.grid().rows(),
+            index_to_lps_mm: volume.grid().index_to_lps_mm_rows(),
             spacing_mm: volume.grid().spacing_mm().to_array(),
             value_range: volume.value_range(),
             quantity: match volume.quantity() {
