@@ -1,7 +1,10 @@
 //! How the volume rendering integral is computed: settings of the integrators, all resolved.
 
+use serde::Serialize;
+
 /// An integrator with its settings.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Within a tolerance, without a step size.
     Exact(Exact),
@@ -12,14 +15,14 @@ pub enum Method {
 }
 
 /// Settings of the exact integrator.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Exact {
     /// Largest error of a channel of a pixel (linear, premultiplied), above 0.
     pub tolerance: f64,
 }
 
 /// Settings of the marching integrator.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct March {
     /// Distance between samples, mm, above 0.
     pub step_mm: f64,
@@ -40,7 +43,8 @@ pub struct March {
 }
 
 /// Where in an interval its sample lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum SampleRule {
     /// At its start: first order.
     Left,
@@ -51,7 +55,8 @@ pub enum SampleRule {
 }
 
 /// Direction of compositing; the results differ by rounding only.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Order {
     /// From the eye, with early termination.
     FrontToBack,
@@ -60,7 +65,8 @@ pub enum Order {
 }
 
 /// Colour as it is composited; the results differ by rounding only.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Colors {
     /// Multiplied by opacity.
     Associated,
@@ -69,7 +75,8 @@ pub enum Colors {
 }
 
 /// What a sample's emission is measured by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Emission {
     /// By length: `(1 − e^{−σΔ}) q/σ`, or `qΔ` where nothing absorbs; independent of the step.
     PerLength,
@@ -78,7 +85,8 @@ pub enum Emission {
 }
 
 /// Where the intervals of neighbouring rays lie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Lattice {
     /// From each ray's own entry into the volume.
     PerRay,
@@ -87,7 +95,7 @@ pub enum Lattice {
 }
 
 /// Offset of the sample lattice per pixel, by a counter-based hash of (seed, pixel): the same for any thread count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Jitter {
     /// Seed.
     pub seed: u64,
@@ -96,7 +104,8 @@ pub struct Jitter {
 }
 
 /// Distribution of the offsets over the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum JitterKind {
     /// Independent per pixel.
     White,

@@ -1,48 +1,34 @@
 //! What will be done: a spec and the metadata of a volume, resolved until no option is left open.
+//!
+//! [`Plan::new`] is where every default is decided. It first resolves what is pictured (layers, light, camera), then
+//! takes the union of what that reads of the volume ([`Demand`]), and lists what is therefore computed, in order, and
+//! what is not, and why. [`explain`] prints it. Nothing below this module reads a [`Spec`].
 
+mod camera;
+mod explain;
+mod integrator;
+mod layers;
+mod light;
 mod method;
+mod output;
+mod stages;
+mod volume_info;
+mod warnings;
 
-use std::path::PathBuf;
-
+pub use explain::{explain, explain_json};
+pub use layers::Layer;
 pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
+pub use output::{Format, Output};
+pub use stages::{Omission, Stage};
+pub use volume_info::{Storage, VolumeInfo};
+
+use std::path::Path;
 
 use crate::demand::Demand;
+use crate::error::Result;
 use crate::scene::Scene;
-use crate::spec::Tissue;
-use crate::transfer::Term;
-use crate::volume::{Grid, Quantity, Samples, Volume};
-
-/// What a plan needs to know of a volume: all but its samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct VolumeInfo {
-    /// Lattice and affine.
-    pub grid: Grid,
-    /// How samples are stored.
-    pub storage: Storage,
-    /// Smallest and largest value.
-    pub value_range: [f64; 2],
-    /// What the values measure.
-    pub quantity: Quantity,
-}
-
-/// How samples are stored in memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Storage {
-    /// 16-bit integers.
-    I16,
-    /// 32-bit floats.
-    F32,
-}
-
-impl From<&Volume> for VolumeInfo {
-    fn from(volume: &Volume) -> Self {
-        let storage = match volume.samples() {
-            Samples::I16(_) => Storage::I16,
-            Samples::F32(_) => Storage::F32,
-        };
-        VolumeInfo { grid: *volume.grid(), storage, value_range: volume.value_range(), quantity: volume.quantity() }
-    }
-}
+use crate::spec::Spec;
+use crate::transfer::TransferFunction;
 
 /// What will be done, for one volume; the same for any number of threads.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,55 +53,50 @@ pub struct Plan {
     pub warnings: Vec<String>,
 }
 
-/// One layer of the transfer function.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Layer {
-    /// Name of its preset, or `layer 2` for one written in the pipeline.
-    pub name: String,
-    /// The tissue it classifies.
-    pub tissue: Option<Tissue>,
-    /// Its terms; their sum over all layers is the transfer function.
-    pub terms: Vec<Term>,
-    /// How far the terms may be from the shapes that were written, as a share of a shape's height; 0 where they are exact.
-    pub max_deviation: f64,
-}
+impl Plan {
+    /// Resolves a spec for a volume whose values are [interpreted](Spec::interpret); `output` is a picture's path in
+    /// place of the spec's, relative to the working directory.
+    ///
+    /// # Errors
+    /// `Fault::Spec` for what only the volume shows to be impossible, such as a preset in HU for values that are not,
+    /// and for a picture whose suffix names no format.
+    pub fn new(spec: &Spec, volume: &VolumeInfo, output: Option<&Path>) -> Result<Self> {
+        let output = Output::resolve(spec, output)?;
+        let [window, gradient_range] = layers::domain(&spec.pipeline);
+        let light = light::resolve(spec);
+        let layers = layers::resolve(spec, volume, gradient_range[1], light.emission_scale)?;
+        let terms = layers.iter().flat_map(|layer| layer.terms.iter().cloned()).collect();
+        let scene = Scene {
+            transfer_function: TransferFunction::new(window, gradient_range[1], terms)?,
+            shading: light.shading,
+            camera: camera::resolve(spec, &volume.grid)?,
+            background: light.background,
+        };
+        let method = integrator::resolve(spec, &volume.grid);
+        let demand = Demand {
+            gradient: scene.shading.is_some(),
+            gradient_magnitude: scene.transfer_function.reads_gradient(),
+            macrocells: method != Method::Reference,
+        };
+        let mut plan = Plan {
+            scene,
+            method,
+            layers,
+            demand,
+            output,
+            certify: spec.pipeline.certify.map(|pixels| pixels as usize),
+            stages: Vec::new(),
+            not_computed: Vec::new(),
+            warnings: Vec::new(),
+        };
+        plan.stages = stages::computed(&plan, volume);
+        plan.not_computed = stages::not_computed(&plan, spec);
+        plan.warnings = warnings::of(&plan, spec, volume);
+        Ok(plan)
+    }
 
-/// The file to write.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Output {
-    /// Its path; relative ones are resolved from the pipeline's folder.
-    pub path: PathBuf,
-    /// Its format.
-    pub format: Format,
-}
-
-/// Format of a picture file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// PNG, 8 bits per channel, sRGB, straight alpha.
-    Png8,
-    /// PNG, 16 bits per channel, sRGB, straight alpha.
-    Png16,
-    /// OpenEXR, 32-bit floats, linear, premultiplied alpha.
-    Exr,
-}
-
-/// One stage of the computation.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Stage {
-    /// The module that does it: `volume`, `field`, `classify`, `integrate`, `image`.
-    pub name: &'static str,
-    /// What it does, with the kernel it uses.
-    pub what: String,
-    /// Bytes it keeps in memory, estimated.
-    pub bytes: u64,
-}
-
-/// Something that is not computed.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Omission {
-    /// What.
-    pub what: &'static str,
-    /// Why nobody needs it, or why it does not apply.
-    pub why: String,
+    /// Bytes in memory, estimated: the sum over the stages.
+    pub fn memory_bytes(&self) -> u64 {
+        self.stages.iter().map(|stage| stage.bytes).sum()
+    }
 }

@@ -57,7 +57,7 @@ pub struct VolumeSpec {
     /// A volume made by rule, in HU.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phantom: Option<PhantomSpec>,
-    /// Which series of a DICOM folder: `largest`, or a Series Instance UID. Needed where a folder holds several.
+    /// Which series of a DICOM folder: `largest`, the default, or a Series Instance UID.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Series>,
     /// What the values measure; by default what the file says.
@@ -80,11 +80,11 @@ pub enum PhantomSpec {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhantomHead {
-    /// Voxels along each axis; 128 by default.
+    /// Voxels along x and along y; 256 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 2, max = 2048))]
+    #[schemars(range(min = 2, max = 1024))]
     pub size: Option<u32>,
-    /// Seed of its noise; 0 by default.
+    /// Seed of its noise; 1 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
 }

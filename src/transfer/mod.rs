@@ -15,10 +15,11 @@
 //! function takes its one-sided limit from inside. At a jump in the interior it is continuous from the right.
 //!
 //! **Shapes** (rectangle, triangle, trapezoid, ellipse, Gaussian, Levoy's contours) and 1D point lists become terms in
-//! `transfer::shapes`; where a shape is not a product of piecewise linear factors, knots are inserted to a stated bound,
+//! [`shapes`]; where a shape is not a product of piecewise linear factors, knots are inserted to a stated bound,
 //! and the function rendered is *defined* to be the terms.
 
 mod curve;
+pub mod shapes;
 
 pub use curve::{Curve, Knot, Side, Weight};
 

@@ -52,8 +52,8 @@ fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
         let size = head.size.map(f64::from);
         check.require(
             "volume.phantom.head.size",
-            size.is_none_or(|n| (2.0..=2048.0).contains(&n)),
-            "2 to 2048 voxels",
+            size.is_none_or(|n| (2.0..=1024.0).contains(&n)),
+            "2 to 1024 voxels",
         )?;
     }
     let has_series = volume.series.is_some();

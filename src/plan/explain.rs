@@ -1,0 +1,171 @@
+//! A plan in words, and as JSON.
+
+use std::fmt::Write;
+
+use serde_json::{Value, json};
+
+use crate::scene::{Background, Camera, Light, Projection, Shading};
+
+use super::Plan;
+
+/// The plan in words: what is computed in order with its memory, from where, what is not computed and why, warnings.
+pub fn explain(plan: &Plan) -> String {
+    let mut text = String::new();
+    let width = plan.stages.iter().map(|stage| stage.what.len()).max().unwrap_or(0);
+    for stage in &plan.stages {
+        line(&mut text, stage.name, &format!("{:width$}  {:>9}", stage.what, bytes(stage.bytes)));
+    }
+    line(&mut text, "memory", &bytes(plan.memory_bytes()));
+    text.push('\n');
+    line(&mut text, "layers", &plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + "));
+    line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    line(&mut text, "behind", &describe_background(plan.scene.background));
+    line(&mut text, "camera", &describe_camera(&plan.scene.camera));
+    line(&mut text, "output", &plan.output.path.display().to_string());
+    if !plan.not_computed.is_empty() {
+        text.push_str("\nnot computed\n");
+        for omission in &plan.not_computed {
+            let _ = writeln!(text, "  {:21} {}", omission.what, omission.why);
+        }
+    }
+    if !plan.warnings.is_empty() {
+        text.push_str("\nwarnings\n");
+        for warning in &plan.warnings {
+            let _ = writeln!(text, "  {warning}");
+        }
+    }
+    text
+}
+
+// Writing to a string cannot fail.
+fn line(text: &mut String, label: &str, content: &str) {
+    let _ = writeln!(text, "{label:10} {}", content.trim_end());
+}
+
+fn bytes(count: u64) -> String {
+    match count {
+        0 => "-".to_owned(),
+        1..1_000 => format!("{count} B"),
+        1_000..1_000_000 => format!("{:.1} kB", count as f64 / 1e3),
+        1_000_000..1_000_000_000 => format!("{:.1} MB", count as f64 / 1e6),
+        _ => format!("{:.1} GB", count as f64 / 1e9),
+    }
+}
+
+fn describe_shading(shading: Option<&Shading>) -> String {
+    let Some(s) = shading else { return "none: emission and absorption alone".to_owned() };
+    let sides = if s.two_sided { "two-sided" } else { "one-sided" };
+    format!(
+        "ambient {}, diffuse {}, specular {} with exponent {}, {sides}, half strength at {} HU/mm, {}",
+        s.ambient,
+        s.diffuse,
+        s.specular,
+        s.shininess,
+        s.soft_gradient_per_mm,
+        s.lights.iter().map(describe_light).collect::<Vec<_>>().join(" and ")
+    )
+}
+
+fn describe_light(light: &Light) -> String {
+    match light {
+        Light::Headlight { .. } => "headlight".to_owned(),
+        Light::Directional { towards, .. } => format!("light from {}", vector(towards.to_array(), 2)),
+    }
+}
+
+fn describe_background(background: Background) -> String {
+    match background {
+        Background::Transparent => "nothing: the picture keeps its alpha".to_owned(),
+        Background::Color(rgb) => format!("linear RGB {}", vector(rgb, 3)),
+    }
+}
+
+fn describe_camera(camera: &Camera) -> String {
+    let [width, height] = camera.size();
+    let projection = match camera.projection() {
+        Projection::Perspective { fov_degrees } => format!("perspective of {fov_degrees:.2} degrees"),
+        Projection::Parallel { height_mm } => format!("parallel, {height_mm:.1} mm high"),
+    };
+    format!(
+        "at {} mm LPS, looking along {}, up {}, {projection}, {width} x {height} pixels",
+        vector(camera.position_mm().to_array(), 1),
+        vector(camera.forward().to_array(), 2),
+        vector(camera.up().to_array(), 2)
+    )
+}
+
+/// Without the sign of a rounded zero.
+fn vector(v: [f64; 3], digits: usize) -> String {
+    let numbers = v.map(|x| {
+        let text = format!("{x:.digits$}");
+        if text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.')) {
+            text.trim_start_matches('-').to_owned()
+        } else {
+            text
+        }
+    });
+    format!("({})", numbers.join(", "))
+}
+
+/// The same as JSON, with all numbers in full.
+pub fn explain_json(plan: &Plan) -> Value {
+    let camera = &plan.scene.camera;
+    let projection = match camera.projection() {
+        Projection::Perspective { fov_degrees } => json!({ "perspective": { "fov_degrees": fov_degrees } }),
+        Projection::Parallel { height_mm } => json!({ "parallel": { "height_mm": height_mm } }),
+    };
+    let layers = plan.layers.iter().map(|layer| {
+        json!({
+            "name": layer.name,
+            "tissue": layer.tissue,
+            "terms": layer.terms.len(),
+            "max_deviation": layer.max_deviation
+        })
+    });
+    let tf = &plan.scene.transfer_function;
+    json!({
+        "stages": plan.stages,
+        "memory_bytes": plan.memory_bytes(),
+        "transfer_function": {
+            "window": tf.window(),
+            "gradient_range_per_mm": tf.gradient_range_per_mm(),
+            "layers": layers.collect::<Vec<_>>()
+        },
+        "shading": plan.scene.shading.as_ref().map(shading_json),
+        "background": match plan.scene.background {
+            Background::Transparent => json!("transparent"),
+            Background::Color(rgb) => json!(rgb),
+        },
+        "camera": {
+            "position_mm": camera.position_mm().to_array(),
+            "forward": camera.forward().to_array(),
+            "right": camera.right().to_array(),
+            "up": camera.up().to_array(),
+            "projection": projection,
+            "size": camera.size()
+        },
+        "method": plan.method,
+        "certify": plan.certify,
+        "output": { "path": plan.output.path, "format": plan.output.format },
+        "not_computed": plan.not_computed,
+        "warnings": plan.warnings
+    })
+}
+
+fn shading_json(shading: &Shading) -> Value {
+    let lights = shading.lights.iter().map(|light| match light {
+        Light::Headlight { color } => json!({ "headlight": { "color": color } }),
+        Light::Directional { towards, color } => {
+            json!({ "directional": { "towards": towards.to_array(), "color": color } })
+        }
+    });
+    json!({
+        "ambient": shading.ambient,
+        "diffuse": shading.diffuse,
+        "specular": shading.specular,
+        "shininess": shading.shininess,
+        "two_sided": shading.two_sided,
+        "soft_gradient_hu_per_mm": shading.soft_gradient_per_mm,
+        "lights": lights.collect::<Vec<_>>()
+    })
+}

@@ -1,0 +1,185 @@
+//! Layers of the transfer function: presets and widgets become terms.
+
+use crate::error::Result;
+use crate::spec::{
+    Color, ContourSpec, EmissionSpec, LayerSpec, LoadedPreset, Pipeline, Spec, Tissue, ValuesName, Widget,
+};
+use crate::transfer::shapes::{Ellipse, Expansion, Gaussian, Shape, Triangle, extinction_per_mm};
+use crate::transfer::{Curve, Knot, Optics, Side, Term, Weight};
+use crate::volume::Quantity;
+
+use super::VolumeInfo;
+
+/// How far terms may be from a shape, as a share of its height, unless told.
+const DEFAULT_DEVIATION: f64 = 1.0 / 32.0;
+
+/// One layer of the transfer function.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// Name of its preset, or `layer 2` for the second one where it is written in the pipeline.
+    pub name: String,
+    /// The tissue it classifies.
+    pub tissue: Option<Tissue>,
+    /// Its terms; their sum over all layers is the transfer function. Those that are 0 on its domain are left out.
+    pub terms: Vec<Term>,
+    /// How far the terms may be from the shapes that were written, as a share of a shape's height; 0 where they are exact.
+    pub max_deviation: f64,
+}
+
+/// The window of values and the range of gradient magnitudes.
+pub(super) fn domain(pipeline: &Pipeline) -> [[f64; 2]; 2] {
+    let window = pipeline.normalise.as_ref().map_or([-1024.0, 3071.0], |normalise| normalise.hu);
+    let gradient = pipeline.gradient.as_ref().map_or([0.0, 1500.0], |gradient| gradient.range_hu_per_mm);
+    [window, gradient]
+}
+
+/// The layers in the order written, with all emission times `emission_scale`.
+pub(super) fn resolve(
+    spec: &Spec,
+    volume: &VolumeInfo,
+    gradient_range_per_mm: f64,
+    emission_scale: f64,
+) -> Result<Vec<Layer>> {
+    let resolve = |(i, (layer, preset)): (usize, (&LayerSpec, Option<&LoadedPreset>))| {
+        let key_path = format!("transfer_function.{i}");
+        let preset = preset.map(|loaded| &loaded.preset);
+        if preset.is_some_and(|p| p.values != Some(ValuesName::Arbitrary)) {
+            refuse_hu_for_other_values(spec, volume, layer, &key_path)?;
+        }
+        let widgets = preset.map(|p| &p.widgets).or(layer.widgets.as_ref());
+        let mut max_deviation = 0.0f64;
+        let mut terms = Vec::new();
+        for (k, widget) in widgets.into_iter().flatten().enumerate() {
+            let named = |error: crate::Error| error.at(spec.path()).element(format!("{key_path}, widget {k}"));
+            let expansion = expand(widget, layer.color).map_err(named)?;
+            max_deviation = max_deviation.max(expansion.max_deviation);
+            for term in expansion.terms {
+                terms.extend(placed(term, layer, emission_scale).and_then(|t| simplified(t, gradient_range_per_mm))?);
+            }
+        }
+        let name = preset.map_or_else(|| format!("layer {}", i + 1), |p| p.name.clone());
+        Ok(Layer { name, tissue: preset.and_then(|p| p.tissue.clone()), terms, max_deviation })
+    };
+    spec.layers().enumerate().map(resolve).collect()
+}
+
+/// A preset in HU means nothing on values of unknown meaning, unless the layer says how the two relate.
+fn refuse_hu_for_other_values(spec: &Spec, volume: &VolumeInfo, layer: &LayerSpec, key_path: &str) -> Result<()> {
+    if volume.quantity == Quantity::Hu || layer.scale.is_some() || layer.shift_hu.is_some() {
+        return Ok(());
+    }
+    let [low, high] = volume.value_range;
+    Err(spec
+        .error(&format!("{key_path}.preset"), "this preset is in HU, and the volume does not say that its values are")
+        .found(format!("values from {low} to {high} of unknown unit"))
+        .remedy(
+            "write volume: { values: hu } if they are HU, volume: { shift_hu: -1024 } if they are HU + 1024, \
+             or give the layer a scale and a shift_hu of its own",
+        ))
+}
+
+/// The terms of a widget as written, before the layer's settings.
+fn expand(widget: &Widget, color: Option<Color>) -> Result<Expansion> {
+    if let Some(points) = &widget.points {
+        let knots = points.iter().map(|p| Knot {
+            value: p.hu,
+            optics: optics(p.opacity_per_mm, p.extinction_per_mm, color.or(p.color), p.emission_per_mm.as_ref()),
+        });
+        let weight = widget.gradient_weight.clone().map(Weight::new).transpose()?;
+        return Ok(Expansion { terms: vec![Term { curve: Curve::new(knots.collect())?, weight }], max_deviation: 0.0 });
+    }
+    let optics = optics(
+        widget.opacity_per_mm,
+        widget.extinction_per_mm,
+        color.or(widget.color),
+        widget.emission_per_mm.as_ref(),
+    );
+    let Some((shape, max_deviation)) = shape(widget) else {
+        return Ok(Expansion { terms: Vec::new(), max_deviation: 0.0 });
+    };
+    shape.expand(optics, max_deviation.unwrap_or(DEFAULT_DEVIATION))
+}
+
+/// The shape of a widget and how far its terms may be from it; the spec has seen to it that there is one, or points.
+fn shape(widget: &Widget) -> Option<(Shape, Option<f64>)> {
+    if let Some(r) = &widget.rectangle {
+        return Some((Shape::Rectangle { value: r.hu, gradient_per_mm: r.gradient_hu_per_mm }, None));
+    }
+    if let Some(t) = &widget.trapezoid {
+        return Some((Shape::Trapezoid { value: t.hu, gradient_per_mm: t.gradient_hu_per_mm }, None));
+    }
+    if let Some(t) = &widget.triangle {
+        let (opening_mm, edge) = (t.opening_mm, t.edge.unwrap_or(0.5));
+        let triangle = Triangle { apex: t.apex_hu, opening_mm, edge, gradient_per_mm: t.gradient_hu_per_mm };
+        return Some((Shape::Triangle(triangle), t.max_deviation));
+    }
+    if let Some(ContourSpec { hu, thickness_mm, gradient_hu_per_mm, max_deviation }) = &widget.contour {
+        let (apex, opening_mm) = (*hu, *thickness_mm);
+        let triangle = Triangle { apex, opening_mm, edge: 1.0, gradient_per_mm: *gradient_hu_per_mm };
+        return Some((Shape::Triangle(triangle), *max_deviation));
+    }
+    if let Some(e) = &widget.ellipse {
+        let ellipse = Ellipse {
+            value: e.hu,
+            value_radius: e.hu_radius,
+            gradient_per_mm: e.gradient_hu_per_mm,
+            gradient_radius_per_mm: e.gradient_radius_hu_per_mm,
+        };
+        return Some((Shape::Ellipse(ellipse), e.max_deviation));
+    }
+    let g = widget.gaussian.as_ref()?;
+    let gradient_per_mm = g.gradient_hu_per_mm.zip(g.gradient_sigma_hu_per_mm).map(|(mean, sigma)| [mean, sigma]);
+    Some((Shape::Gaussian(Gaussian { value: [g.hu, g.hu_sigma], gradient_per_mm }), g.max_deviation))
+}
+
+fn optics(
+    opacity_per_mm: Option<f64>,
+    extinction: Option<f64>,
+    color: Option<Color>,
+    emission: Option<&EmissionSpec>,
+) -> Optics {
+    let extinction = extinction.unwrap_or_else(|| extinction_per_mm(opacity_per_mm.unwrap_or(0.0), 1.0));
+    let absorbing = Optics::colored(extinction, color.unwrap_or(Color::BLACK).0);
+    match emission {
+        None => absorbing,
+        Some(EmissionSpec { color: Color(rgb), strength }) => {
+            absorbing.plus(*strength, Optics { extinction_per_mm: 0.0, emission_per_mm: *rgb })
+        }
+    }
+}
+
+/// A term with the layer's scale, shift and opacity scale.
+fn placed(term: Term, layer: &LayerSpec, emission_scale: f64) -> Result<Term> {
+    let (scale, shift) = (layer.scale.unwrap_or(1.0), layer.shift_hu.unwrap_or(0.0));
+    let opacity_scale = layer.opacity_scale.unwrap_or(1.0);
+    let knots = term.curve.knots().iter().map(|knot| Knot {
+        value: knot.value * scale + shift,
+        optics: Optics {
+            extinction_per_mm: knot.optics.extinction_per_mm * opacity_scale,
+            emission_per_mm: knot.optics.emission_per_mm.map(|q| q * opacity_scale * emission_scale),
+        },
+    });
+    let weight = term.weight.map(|w| Weight::new(w.knots().iter().map(|[g, w]| [g * scale, *w]).collect()));
+    Ok(Term { curve: Curve::new(knots.collect())?, weight: weight.transpose()? })
+}
+
+/// The same function on gradient magnitudes up to `range`, without a weight that is constant there, so that nobody
+/// computes gradients for it; `None` for a term that is 0 there.
+fn simplified(term: Term, range: f64) -> Result<Option<Term>> {
+    if term.curve.knots().iter().all(|knot| knot.optics == Optics::NOTHING) {
+        return Ok(None);
+    }
+    let Some(weight) = &term.weight else { return Ok(Some(term)) };
+    let inner = weight.positions().filter(|&g| 0.0 < g && g < range);
+    let level = weight.at(0.0, Side::Right);
+    let even = inner.flat_map(|g| [(g, Side::Left), (g, Side::Right)]).chain([(range, Side::Left)]);
+    if even.into_iter().any(|(g, side)| weight.at(g, side) != level) {
+        return Ok(Some(term));
+    }
+    if level == 0.0 {
+        return Ok(None);
+    }
+    let knots = term.curve.knots().iter();
+    let knots = knots.map(|k| Knot { value: k.value, optics: Optics::NOTHING.plus(level, k.optics) }).collect();
+    Ok(Some(Term { curve: Curve::new(knots)?, weight: None }))
+}

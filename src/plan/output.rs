@@ -1,0 +1,71 @@
+//! The file to write.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Fault, Result};
+use crate::spec::{Bits, Spec};
+
+/// The file to write.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Output {
+    /// Its path; relative to the working directory.
+    pub path: PathBuf,
+    /// Its format.
+    pub format: Format,
+}
+
+/// Format of a picture file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Format {
+    /// PNG, 8 bits per channel, sRGB, straight alpha.
+    Png8,
+    /// PNG, 16 bits per channel, sRGB, straight alpha.
+    Png16,
+    /// OpenEXR, 32-bit floats, linear, premultiplied alpha.
+    Exr,
+}
+
+impl Output {
+    /// The path a caller wants, else that of the spec, else the pipeline's name with `.png`.
+    pub(super) fn resolve(spec: &Spec, wanted: Option<&Path>) -> Result<Self> {
+        let path = match (wanted, &spec.pipeline.output) {
+            (Some(path), _) => path.to_path_buf(),
+            (None, Some(path)) => spec.resolve(path),
+            (None, None) => spec.path().with_extension("png"),
+        };
+        let suffix = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let bits = spec.pipeline.image.as_ref().and_then(|image| image.bits).unwrap_or(Bits::Eight);
+        let format = match (suffix.as_str(), bits) {
+            ("png", Bits::Eight) => Format::Png8,
+            ("png", Bits::Sixteen) => Format::Png16,
+            ("exr", _) => Format::Exr,
+            _ => {
+                return Err(Error::new(Fault::Spec, "the picture's suffix names no format")
+                    .at(&path)
+                    .expected(".png or .exr"));
+            }
+        };
+        Ok(Output { path, format })
+    }
+}
+
+impl Format {
+    /// The format in words.
+    pub(super) fn describe(self) -> &'static str {
+        match self {
+            Format::Png8 => "PNG, 8 bits, sRGB, straight alpha",
+            Format::Png16 => "PNG, 16 bits, sRGB, straight alpha",
+            Format::Exr => "OpenEXR, 32-bit floats, linear, premultiplied alpha",
+        }
+    }
+
+    /// Bytes per pixel before compression.
+    pub(super) fn bytes_per_pixel(self) -> u64 {
+        match self {
+            Format::Png8 => 4,
+            Format::Png16 => 8,
+            Format::Exr => 16,
+        }
+    }
+}

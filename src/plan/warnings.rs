@@ -1,0 +1,70 @@
+//! What a careful user should know of a plan before the first ray.
+
+use crate::spec::{Spec, ValuesName};
+use crate::transfer::{Optics, Side, TransferFunction};
+use crate::volume::Quantity;
+
+use super::{Exact, Method, Plan, VolumeInfo};
+
+pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let tf = &plan.scene.transfer_function;
+    let ([low, high], [least, most]) = (tf.window(), volume.value_range);
+    if least < low || most > high {
+        warnings.push(format!(
+            "values from {least} to {most} go beyond the window {low} to {high} and look like its ends; \
+             normalise.hu widens it"
+        ));
+    }
+    if shows_nothing(tf, volume.value_range) {
+        warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
+    }
+    for (_, preset) in spec.layers() {
+        let Some(preset) = preset.map(|loaded| &loaded.preset) else { continue };
+        if preset.values == Some(ValuesName::Arbitrary) && volume.quantity == Quantity::Hu {
+            warnings.push(format!("preset {} is not in HU, and the volume's values are", preset.name));
+        }
+    }
+    for layer in plan.layers.iter().filter(|layer| layer.max_deviation > 0.0) {
+        warnings.push(format!(
+            "{} is rendered by terms within {:.4} of the height of its shapes; max_deviation lowers it",
+            layer.name, layer.max_deviation
+        ));
+    }
+    match plan.method {
+        // Below this, rounding in f32 is most of the error.
+        Method::Exact(Exact { tolerance }) if tolerance < 1e-5 => {
+            warnings.push(format!(
+                "a tolerance of {tolerance:.1e} is near the rounding of f32; integrate: reference is exact in f64"
+            ));
+        }
+        Method::Reference if plan.certify.is_some() => {
+            warnings.push("certify compares the reference with itself".to_owned());
+        }
+        _ => {}
+    }
+    warnings
+}
+
+/// True if the transfer function is 0 at all values of the volume, at any gradient magnitude.
+fn shows_nothing(tf: &TransferFunction, [least, most]: [f64; 2]) -> bool {
+    let [low, high] = tf.window();
+    let (least, most) = (least.clamp(low, high), most.clamp(low, high));
+    let inner = tf.value_knots().into_iter().filter(|&v| least <= v && v <= most);
+    let values: Vec<f64> = inner.chain([least, most]).collect();
+    let gradients = tf.gradient_knots();
+    let sides = [Side::Left, Side::Right];
+    let limits = values.iter().flat_map(|&v| {
+        // Beyond the volume's own values a jump shows nothing.
+        sides
+            .into_iter()
+            .filter(move |side| match side {
+                Side::Left => v > least || least == most,
+                Side::Right => v < most || least == most,
+            })
+            .map(move |side| (v, side))
+    });
+    limits
+        .flat_map(|v| gradients.iter().flat_map(move |&g| sides.map(|side| (v, (g, side)))))
+        .all(|((v, v_side), (g, g_side))| tf.evaluate_side(v, v_side, g, g_side) == Optics::NOTHING)
+}
