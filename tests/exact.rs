@@ -4,7 +4,7 @@ use crate::support::scenes::{lit, rough_volume, scene_around, thin_shell, two_co
 use pellucid::integrate::exact::{Precision, tracer};
 use pellucid::oracle::Oracle;
 use pellucid::scene::Scene;
-use pellucid::transfer::{Curve, Term};
+use pellucid::transfer::{Curve, Knot, Optics, Term};
 use pellucid::volume::Volume;
 
 /// Largest error, and largest ratio of error to reported bound, over all pixels of a scene.
@@ -57,6 +57,28 @@ fn every_pixel_is_within_tolerance_and_bound() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn tangential_crossings_of_jumps_hold_in_f32() {
+    // Jumps between nothing and 8/mm every 10 HU: a few cells per picture graze one to within rounding.
+    let mut knots = Vec::new();
+    for step in -100..100 {
+        let (at, height) = (10.0 * f64::from(step), if step % 2 == 0 { 8.0 } else { 0.0 });
+        for h in [8.0 - height, height] {
+            knots.push(Knot { value: at, optics: Optics::colored(h, [0.9, 0.5, 0.1]) });
+        }
+    }
+    let stripes = Term { curve: Curve::new(knots).unwrap(), weight: None };
+    let volume = rough_volume(12);
+    let scene = scene_around(&volume, vec![stripes], None, [64, 64]);
+    for tolerance in [1e-3, 1e-4] {
+        let (error, of_bound) = held_against_the_oracle(&volume, &scene, tolerance, Precision::Single);
+        assert!(
+            error <= tolerance && of_bound <= 1.0,
+            "tolerance {tolerance:e}: error {error:e}, {of_bound} x the bound"
+        );
     }
 }
 

@@ -11,7 +11,12 @@ pub struct Axis<R> {
     /// For each of `buckets` equal parts of the domain, the interval of its lower end.
     first_in_bucket: Vec<u32>,
     buckets_per_unit: R,
+    /// Per knot, whether the function jumps there, or all but jumps.
+    steep: Vec<bool>,
 }
+
+/// An interval no wider than this fraction of the axis is as good as a jump.
+const NARROW: f64 = 1e-5;
 
 /// An interval of an axis before baking, with the ends in the units of the transfer function and the side from which each
 /// is approached.
@@ -47,7 +52,8 @@ impl<R: Real> Axis<R> {
         // Several buckets per knot: a look-up then rarely moves more than one interval on.
         let buckets = (8 * positions.len()).next_power_of_two().clamp(64, 1 << 16);
         let buckets_per_unit = R::from_f64(buckets as f64) / span;
-        let mut axis = Axis { knots: positions, first_in_bucket: Vec::new(), buckets_per_unit };
+        let steep = vec![false; positions.len()];
+        let mut axis = Axis { knots: positions, first_in_bucket: Vec::new(), buckets_per_unit, steep };
         axis.first_in_bucket = (0..buckets)
             .map(|b| {
                 // One bucket lower than its nominal end, since the look-up's product may round up.
@@ -56,6 +62,20 @@ impl<R: Real> Axis<R> {
             })
             .collect();
         (axis, ends)
+    }
+
+    /// Marks the knots at which the function jumps by `jumps(knot)`, or that bound a very narrow interval.
+    pub(super) fn mark_steep(&mut self, jumps: impl Fn(usize) -> bool) {
+        let n = self.knots.len();
+        let narrow = R::from_f64(NARROW) * (self.knots[n - 1] - self.knots[0]);
+        let is_narrow = |i: usize| i + 1 < n && self.knots[i + 1] - self.knots[i] <= narrow;
+        self.steep = (0..n).map(|i| jumps(i) || is_narrow(i) || (i > 0 && is_narrow(i - 1))).collect();
+    }
+
+    /// Whether the function jumps at a knot, or all but jumps: where it does, a rounding error of the argument matters.
+    #[inline(always)]
+    pub fn is_steep(&self, knot: usize) -> bool {
+        self.steep[knot]
     }
 
     /// Number of intervals.
@@ -89,7 +109,9 @@ impl<R: Real> Axis<R> {
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.knots.as_slice()) + size_of_val(self.first_in_bucket.as_slice())
+        size_of_val(self.knots.as_slice())
+            + size_of_val(self.first_in_bucket.as_slice())
+            + size_of_val(self.steep.as_slice())
     }
 }
 

@@ -25,7 +25,7 @@ pub struct Linear<R> {
 
 impl<R: Real> OneD<R> {
     pub(super) fn bake(transfer_function: &TransferFunction, rescale: Rescale) -> Self {
-        let (axis, ends) = Axis::bake(&transfer_function.value_knots(), |v| rescale.stored(v));
+        let (mut axis, ends) = Axis::bake(&transfer_function.value_knots(), |v| rescale.stored(v));
         let pieces: Vec<Linear<R>> = ends
             .iter()
             .map(|e| {
@@ -38,6 +38,13 @@ impl<R: Real> OneD<R> {
                 }
             })
             .collect();
+        axis.mark_steep(|k| {
+            0 < k && k < ends.len() && {
+                let (below, above) = (ends[k - 1], ends[k]);
+                let at = |v, side| transfer_function.evaluate_side(v, side, 0.0, Side::Right);
+                at(below.high, below.high_side) != at(above.low, above.low_side)
+            }
+        });
         let mut lit_before = vec![0];
         for piece in &pieces {
             let lit = piece.low.iter().chain(&piece.slope).any(|&x| x != R::ZERO);

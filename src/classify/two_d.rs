@@ -1,8 +1,9 @@
 //! A transfer function of value and gradient magnitude.
 
+use super::axis::Ends;
 use super::{Axis, Classifier, Rgbs, rgbs};
 use crate::math::Real;
-use crate::transfer::TransferFunction;
+use crate::transfer::{Optics, Side, TransferFunction};
 use crate::volume::Rescale;
 
 /// A transfer function of value and gradient magnitude: per patch between neighbouring knots of both axes, a bilinear
@@ -39,8 +40,8 @@ impl<R: Real> Bilinear<R> {
 
 impl<R: Real> TwoD<R> {
     pub(super) fn bake(transfer_function: &TransferFunction, rescale: Rescale) -> Self {
-        let (values, value_ends) = Axis::bake(&transfer_function.value_knots(), |v| rescale.stored(v));
-        let (gradients, gradient_ends) = Axis::bake(&transfer_function.gradient_knots(), |g| g);
+        let (mut values, value_ends) = Axis::bake(&transfer_function.value_knots(), |v| rescale.stored(v));
+        let (mut gradients, gradient_ends) = Axis::bake(&transfer_function.gradient_knots(), |g| g);
         let mut patches = Vec::with_capacity(values.intervals() * gradients.intervals());
         for g in &gradient_ends {
             for v in &value_ends {
@@ -59,6 +60,22 @@ impl<R: Real> TwoD<R> {
                 });
             }
         }
+        let tf = transfer_function;
+        let jumps = |k: usize, ends: &[Ends], at: &dyn Fn(f64, Side) -> Vec<Optics>| {
+            0 < k && k < ends.len() && at(ends[k - 1].high, ends[k - 1].high_side) != at(ends[k].low, ends[k].low_side)
+        };
+        values.mark_steep(|k| {
+            jumps(k, &value_ends, &|v, side| {
+                let ends = gradient_ends.iter().flat_map(|g| [(g.low, g.low_side), (g.high, g.high_side)]);
+                ends.map(|(g, g_side)| tf.evaluate_side(v, side, g, g_side)).collect()
+            })
+        });
+        gradients.mark_steep(|k| {
+            jumps(k, &gradient_ends, &|g, side| {
+                let ends = value_ends.iter().flat_map(|v| [(v.low, v.low_side), (v.high, v.high_side)]);
+                ends.map(|(v, v_side)| tf.evaluate_side(v, v_side, g, side)).collect()
+            })
+        });
         let (nv, ng) = (values.intervals(), gradients.intervals());
         let mut lit_below = vec![0; (nv + 1) * (ng + 1)];
         for j in 0..ng {

@@ -53,7 +53,7 @@ impl<R: Real> Medium<R> for OneD<R> {
 
     #[inline(always)]
     fn cut(&self, value: &Cubic<R>, splits: &mut Splits<R>) {
-        splits.cut(value, self.axis().knots());
+        splits.cut(value, self.axis());
     }
 
     #[inline(always)]
@@ -102,8 +102,8 @@ impl<R: Real> Medium<R> for TwoD<R> {
 
     #[inline(always)]
     fn cut(&self, [value, magnitude]: &[Cubic<R>; 2], splits: &mut Splits<R>) {
-        splits.cut(value, self.values().knots());
-        splits.cut(magnitude, self.gradients().knots());
+        splits.cut(value, self.values());
+        splits.cut(magnitude, self.gradients());
     }
 
     #[inline(always)]

@@ -15,8 +15,6 @@ mod shade;
 mod splits;
 mod values;
 
-use std::fmt;
-
 use crate::classify::{Baked, bake};
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
@@ -89,72 +87,75 @@ pub trait Tracer: Sync {
 
 /// The exact integrator for a scene, within `tolerance` of a channel of a pixel.
 pub fn tracer<'a>(volume: &'a Volume, scene: &'a Scene, tolerance: f64, precision: Precision) -> Box<dyn Tracer + 'a> {
-    match precision {
-        Precision::Single => for_medium::<f32>(volume, scene, tolerance),
-        Precision::Double => for_medium::<f64>(volume, scene, tolerance),
+    match volume.samples() {
+        Samples::I16(samples) => for_samples(volume, scene, samples, tolerance, precision),
+        Samples::F32(samples) => for_samples(volume, scene, samples, tolerance, precision),
     }
 }
 
-fn for_medium<'a, R: Real>(volume: &'a Volume, scene: &'a Scene, tolerance: f64) -> Box<dyn Tracer + 'a> {
-    match bake::<R>(&scene.transfer_function, volume.rescale()) {
-        Baked::OneD(medium) => for_samples(volume, scene, tolerance, medium, "tf1d"),
-        Baked::TwoD(medium) => for_samples(volume, scene, tolerance, medium, "tf2d"),
-    }
-}
-
-fn for_samples<'a, R: Real, M: Medium<R> + 'a>(
+fn for_samples<'a, V: Voxel>(
     volume: &'a Volume,
     scene: &'a Scene,
+    samples: &'a [V],
     tolerance: f64,
-    medium: M,
-    name: &str,
+    precision: Precision,
 ) -> Box<dyn Tracer + 'a> {
-    let brightest = Brightest::of(scene);
-    let grid = volume.grid();
-    let lit = if scene.shading.is_some() { "lit" } else { "unlit" };
-    let precision = if R::EPSILON.to_f64() > 1e-10 { "f32" } else { "f64" };
-    let kernel = |samples| format!("exact/{samples}/{name}/{lit}/{precision}");
-    let shading = scene.shading.as_ref();
-    match volume.samples() {
-        Samples::I16(samples) => {
-            let lattice = Lattice::new(volume, samples);
-            let frame = Frame { grid, lattice, medium, tolerance, brightest };
-            Box::new(Kernel { frame, shading, name: kernel(i16::NAME), real: std::marker::PhantomData::<R> })
+    let lattice = Lattice::new(volume, samples);
+    let frame = Frame { grid: volume.grid(), lattice, tolerance, brightest: Brightest::of(scene) };
+    let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
+    let name = |classifier: &str| {
+        let lit = if shading.is_some() { "lit" } else { "unlit" };
+        let real = if precision == Precision::Single { "f32" } else { "f64" };
+        format!("exact/{}/{classifier}/{lit}/{real}", V::NAME)
+    };
+    match (bake::<f64>(tf, rescale), bake::<f32>(tf, rescale)) {
+        (Baked::OneD(double), Baked::OneD(single)) => {
+            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf1d") })
         }
-        Samples::F32(samples) => {
-            let lattice = Lattice::new(volume, samples);
-            let frame = Frame { grid, lattice, medium, tolerance, brightest };
-            Box::new(Kernel { frame, shading, name: kernel(f32::NAME), real: std::marker::PhantomData::<R> })
+        (Baked::TwoD(double), Baked::TwoD(single)) => {
+            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf2d") })
         }
+        _ => unreachable!("both precisions bake the same transfer function"),
     }
 }
 
-struct Kernel<'a, R, V, M> {
-    frame: Frame<'a, V, M>,
+/// A kernel for one type of voxels, transfer function and shading, in both precisions.
+struct Kernel<'a, V, D, S> {
+    frame: Frame<'a, V>,
     shading: Option<&'a Shading>,
+    double: D,
+    single: S,
+    precision: Precision,
     name: String,
-    real: std::marker::PhantomData<R>,
 }
 
-impl<R: Real, V: Voxel, M: Medium<R>> Tracer for Kernel<'_, R, V, M> {
-    fn trace(&self, ray: &Ray) -> Option<Traced> {
+impl<V: Voxel, D: Medium<f64>, S: Medium<f32>> Kernel<'_, V, D, S> {
+    /// Traces a ray, and says whether rounding might have misplaced a cut.
+    fn trace_in<R: Real, M: Medium<R>>(&self, medium: &M, ray: &Ray) -> Option<(Traced, bool)> {
         let mut splits = Splits::<R>::default();
-        match self.shading {
-            None => self.frame.trace(ray, &Unlit, &mut splits),
+        let traced = match self.shading {
+            None => self.frame.trace(ray, medium, &Unlit, &mut splits),
             Some(shading) => {
                 let lit = Lit::<R>::new(shading, ray.direction, self.frame.brightest.color);
-                self.frame.trace(ray, &lit, &mut splits)
+                self.frame.trace(ray, medium, &lit, &mut splits)
+            }
+        };
+        traced.map(|t| (t, splits.ill_conditioned))
+    }
+}
+
+impl<V: Voxel, D: Medium<f64>, S: Medium<f32>> Tracer for Kernel<'_, V, D, S> {
+    fn trace(&self, ray: &Ray) -> Option<Traced> {
+        if self.precision == Precision::Single {
+            let (traced, ill_conditioned) = self.trace_in::<f32, S>(&self.single, ray)?;
+            if !ill_conditioned {
+                return Some(traced);
             }
         }
+        self.trace_in::<f64, D>(&self.double, ray).map(|(traced, _)| traced)
     }
 
     fn kernel(&self) -> &str {
         &self.name
-    }
-}
-
-impl<R, V, M> fmt::Debug for Kernel<'_, R, V, M> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.name)
     }
 }

@@ -16,6 +16,9 @@ use super::splits::Splits;
 /// A piece is not halved below this fraction of a segment; what it then costs is charged to the bound.
 const SMALLEST_PIECE: f64 = 1.0 / (1u64 << 30) as f64;
 
+/// What a cut at a jump that rounding has misplaced may cost, over the tolerance, before the ray is traced in f64.
+const OF_A_CUT: f64 = 0.01;
+
 /// What a ray brings.
 #[derive(Debug, Clone, Copy)]
 pub struct Traced {
@@ -31,10 +34,9 @@ pub struct Traced {
 
 /// What all rays of a frame share.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame<'a, V, M> {
+pub(super) struct Frame<'a, V> {
     pub(super) grid: &'a Grid,
     pub(super) lattice: Lattice<'a, V>,
-    pub(super) medium: M,
     pub(super) tolerance: f64,
     pub(super) brightest: Brightest,
 }
@@ -48,6 +50,8 @@ pub(super) struct Brightest {
     pub(super) per_absorbed: f64,
     /// Of shaded emission, 1/mm.
     pub(super) per_mm: f64,
+    /// Of extinction, 1/mm.
+    pub(super) extinction_per_mm: f64,
 }
 
 impl Brightest {
@@ -77,6 +81,7 @@ impl Brightest {
             color,
             per_absorbed: per_absorbed + highlight,
             per_mm: emission * reflected + extinction * highlight,
+            extinction_per_mm: extinction,
         }
     }
 
@@ -86,23 +91,27 @@ impl Brightest {
     }
 }
 
-impl<V: Voxel, M> Frame<'_, V, M> {
+impl<V: Voxel> Frame<'_, V> {
     /// Traces one ray.
-    pub(super) fn trace<R: Real, S: Shader<R>>(&self, ray: &Ray, shader: &S, splits: &mut Splits<R>) -> Option<Traced>
-    where
-        M: Medium<R>,
-    {
+    pub(super) fn trace<R: Real, M: Medium<R>, S: Shader<R>>(
+        &self,
+        ray: &Ray,
+        medium: &M,
+        shader: &S,
+        splits: &mut Splits<R>,
+    ) -> Option<Traced> {
         let inside = IndexRay::clip(ray, self.grid)?;
         let mut light =
             Front { radiance: [0.0; 3], transmittance: 1.0, budget: Budget::new(self.tolerance), pieces: 0 };
         for segment in inside.segments(self.grid) {
             let stored = self.lattice.corners(segment.cell);
-            let Some(fields) = self.medium.fields(&stored, &segment, || self.lattice.gradients(segment.cell)) else {
+            let Some(fields) = medium.fields(&stored, &segment, || self.lattice.gradients(segment.cell)) else {
                 continue;
             };
             let shading = shader.cell(|| self.lattice.gradients(segment.cell).map(|c| along(&c, &segment)));
-            splits.clear();
-            self.medium.cut(&fields, splits);
+            let harm = self.brightest.per_mm.max(self.brightest.extinction_per_mm) * segment.length_mm;
+            splits.restart(R::from_f64(harm / (OF_A_CUT * self.tolerance)));
+            medium.cut(&fields, splits);
             shader.cut(&shading, splits);
             splits.sorted();
             let front_mm = segment.exit_mm - segment.length_mm;
@@ -110,7 +119,7 @@ impl<V: Voxel, M> Frame<'_, V, M> {
                 let ends = [splits.get(i - 1), splits.get(i)];
                 light.pass(ends, |part| {
                     let length_mm = R::from_f64(segment.length_mm) * (part[1] - part[0]);
-                    let integral = self.medium.integrate(&fields, part, length_mm, shader, &shading)?;
+                    let integral = medium.integrate(&fields, part, length_mm, shader, &shading)?;
                     let at_mm = front_mm + part[1].to_f64() * segment.length_mm;
                     Some((integral, (at_mm - inside.enter_mm()) / inside.length_mm()))
                 });

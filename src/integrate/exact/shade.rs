@@ -144,7 +144,7 @@ impl<R: Real> Shader<R> for Lit<R> {
 
     fn cut(&self, g: &[Cubic<R>; 3], splits: &mut Splits<R>) {
         for light in &self.lights {
-            splits.cut(&along_light(g, &light.towards), &[R::ZERO]);
+            splits.cut_at(&along_light(g, &light.towards), &[R::ZERO]);
         }
     }
 
@@ -310,7 +310,7 @@ mod tests {
             let g: [Cubic<f64>; 3] =
                 std::array::from_fn(|a| std::array::from_fn(|_| base[a] + spread * random(&mut seed)));
             let mut splits = Splits::default();
-            splits.clear();
+            splits.restart(1.0);
             lit.cut(&g, &mut splits);
             let positions = splits.sorted().to_vec();
             for pair in positions.windows(2).filter(|p| p[1] - p[0] > 1e-9) {
