@@ -1,6 +1,8 @@
 //! From a spec to a picture: load, plan, clip, integrate, encode, and a sidecar that says how it was made.
 
+mod certify;
 mod clip;
+mod digest;
 mod load;
 mod measure;
 mod sidecar;
@@ -10,17 +12,19 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Fault, Result};
 use crate::image::Image;
-use crate::integrate;
-use crate::io::{Scan, exr, png, whole_file};
-use crate::plan::{Format, Plan, VolumeInfo};
+use crate::integrate::{self, Rendered};
+use crate::io::{Scan, exr, png};
+use crate::plan::{Format, Output, Plan, VolumeInfo};
 use crate::spec::Spec;
 
+pub use certify::Certificate;
 pub use clip::Clipped;
 pub use load::load;
 pub use measure::StageTime;
 pub use sidecar::Sidecar;
 
 use measure::Stopwatch;
+use sidecar::Made;
 
 /// What is not written in the pipeline.
 #[derive(Debug, Clone, Default)]
@@ -57,21 +61,24 @@ pub struct Outcome {
 /// Renders a pipeline and writes the picture with its sidecar, each whole or not at all.
 ///
 /// # Errors
-/// Those of each stage; nothing is written if one fails before the picture is complete.
+/// Those of each stage; nothing is written if one fails before the picture is complete. `Fault::Tolerance` if the picture
+/// was certified and found not to be within its tolerance; then it and its sidecar are there to be looked at.
 pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Outcome> {
     let mut stopwatch = Stopwatch::start(progress);
     let scan = stopwatch.time("load", || load(spec))?;
     let plan = stopwatch.time("plan", || plan(spec, &scan, options))?;
     let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
     prepare_folder(&plan.output.path)?;
-    progress(Event::Rays(plan.scene.camera.size().iter().product()));
-    let pixels = |count| progress(Event::Pixels(count));
-    let rendered =
-        stopwatch.time("integrate", || integrate::render(&scan.volume, &plan.scene, &plan.method, &pixels))?;
-    let encoded = stopwatch.time("encode", || encode(&rendered.image, plan.output.format))?;
-    let sidecar = Sidecar::new(spec, &scan, &plan, clipped, &rendered, stopwatch.finish());
-    whole_file::write(&plan.output.path, &encoded)?;
+    let rendered = stopwatch.time("integrate", || integrate(&scan, &plan, progress))?;
+    let pixels_sha256 = digest::of_pixels(&rendered.image);
+    let certificate = plan.certify.map(|count| {
+        stopwatch.time("certify", || Certificate::of(&rendered.image, &pixels_sha256, &scan.volume, &plan, count))
+    });
+    stopwatch.time("encode", || encode(&rendered.image, &plan.output, &texts(&rendered, &pixels_sha256)))?;
+    let made = Made { clipped, rendered: &rendered, pixels_sha256, certificate, stages: stopwatch.finish() };
+    let sidecar = Sidecar::new(spec, &scan, &plan, made);
     let sidecar_path = sidecar.write_beside(&plan.output.path)?;
+    refuse_above_tolerance(&plan.output.path, sidecar.certificate.as_ref())?;
     Ok(Outcome { picture: plan.output.path, sidecar_path, sidecar })
 }
 
@@ -83,11 +90,39 @@ pub fn plan(spec: &Spec, scan: &Scan, options: &Options) -> Result<Plan> {
     Plan::new(spec, &VolumeInfo::from(&scan.volume), options.output.as_deref())
 }
 
-fn encode(image: &Image, format: Format) -> Result<Vec<u8>> {
-    match format {
-        Format::Png8 => png::encode_8(image),
-        Format::Png16 => png::encode_16(image),
-        Format::Exr => exr::encode(image),
+fn integrate(scan: &Scan, plan: &Plan, progress: Progress<'_>) -> Result<Rendered> {
+    progress(Event::Rays(plan.scene.camera.size().iter().product()));
+    let pixels = |count| progress(Event::Pixels(count));
+    integrate::render(&scan.volume, &plan.scene, &plan.method, &pixels)
+}
+
+/// What the picture's file says of itself, for those who have lost its sidecar.
+fn texts(rendered: &Rendered, pixels_sha256: &str) -> Vec<(String, String)> {
+    let texts = [
+        ("Software", concat!("pellucid ", env!("CARGO_PKG_VERSION"))),
+        ("pellucid kernel", &rendered.statistics.kernel),
+        ("pellucid pixels SHA-256", pixels_sha256),
+    ];
+    texts.map(|(keyword, text)| (keyword.to_string(), text.to_string())).to_vec()
+}
+
+fn encode(image: &Image, output: &Output, texts: &[(String, String)]) -> Result<()> {
+    match output.format {
+        Format::Png8 => png::write(&output.path, image, png::Depth::Eight, texts),
+        Format::Png16 => png::write(&output.path, image, png::Depth::Sixteen, texts),
+        Format::Exr => exr::write(&output.path, image, texts),
+    }
+}
+
+fn refuse_above_tolerance(picture: &Path, certificate: Option<&Certificate>) -> Result<()> {
+    match certificate {
+        Some(Certificate { above_tolerance: Some(above), largest_error, statement, .. }) if *above > 0 => {
+            Err(Error::new(Fault::Tolerance, "the picture is not within its tolerance")
+                .at(picture)
+                .found(format!("{statement}, the largest error {largest_error:.3e}"))
+                .remedy("report it with the pipeline: the method's bound should have held"))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -7,11 +7,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 
-use super::{Clipped, StageTime, measure};
+use super::{Certificate, Clipped, StageTime, digest, measure};
 use crate::error::{Error, Fault, Result};
-use crate::image::Image;
 use crate::integrate::Rendered;
 use crate::io::{Scan, whole_file};
 use crate::plan::{self, Method, Plan};
@@ -25,6 +23,8 @@ pub struct Sidecar {
     pub tool: Tool,
     /// SHA-256 of the pipeline's file and of each preset file it names, by what it is called there.
     pub inputs_sha256: Vec<InputHash>,
+    /// The pipeline as written, with overrides, less the paths of the scan and of the picture.
+    pub pipeline: Value,
     /// What was done, every option resolved.
     pub plan: Value,
     /// The scan.
@@ -33,6 +33,8 @@ pub struct Sidecar {
     pub picture: PictureRecord,
     /// How the integral was computed.
     pub method: MethodRecord,
+    /// The error found by the oracle, where the pipeline asks for that.
+    pub certificate: Option<Certificate>,
     /// Voxels outside the window of values.
     pub clipped: Clipped,
     /// Seconds per stage.
@@ -107,30 +109,33 @@ pub struct MethodRecord {
     pub rays: u64,
 }
 
+/// What a run has made by the time it writes its sidecar.
+pub(super) struct Made<'a> {
+    pub(super) clipped: Clipped,
+    pub(super) rendered: &'a Rendered,
+    pub(super) pixels_sha256: String,
+    pub(super) certificate: Option<Certificate>,
+    pub(super) stages: Vec<StageTime>,
+}
+
 impl Sidecar {
     /// The record of a picture.
-    pub(super) fn new(
-        spec: &Spec,
-        scan: &Scan,
-        plan: &Plan,
-        clipped: Clipped,
-        rendered: &Rendered,
-        stages: Vec<StageTime>,
-    ) -> Self {
-        let tool = Tool {
-            name: env!("CARGO_PKG_NAME"),
-            version: env!("CARGO_PKG_VERSION"),
-            platform: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
-        };
+    pub(super) fn new(spec: &Spec, scan: &Scan, plan: &Plan, made: Made<'_>) -> Self {
         Sidecar {
-            tool,
+            tool: Tool::this(),
             inputs_sha256: input_hashes(spec),
-            plan: plan::explain_json(plan),
+            pipeline: without(serde_json::json!(spec.pipeline), &[&["volume", "source"], &["output"]]),
+            plan: without(plan::explain_json(plan), &[&["output", "path"]]),
             volume: VolumeRecord::from(&scan.volume),
-            picture: PictureRecord::new(&plan.output.path, &rendered.image),
-            method: MethodRecord::new(&plan.method, rendered),
-            clipped,
-            stages,
+            picture: PictureRecord {
+                file: plan.output.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+                size: plan.scene.camera.size(),
+                pixels_sha256: made.pixels_sha256,
+            },
+            method: MethodRecord::new(&plan.method, made.rendered),
+            certificate: made.certificate,
+            clipped: made.clipped,
+            stages: made.stages,
             peak_memory_bytes: measure::peak_memory_bytes(),
             threads: rayon::current_num_threads(),
             warnings: scan.warnings.iter().chain(&plan.warnings).cloned().collect(),
@@ -153,6 +158,17 @@ impl Sidecar {
     }
 }
 
+impl Tool {
+    /// This build on this machine.
+    fn this() -> Self {
+        Tool {
+            name: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            platform: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+        }
+    }
+}
+
 impl From<&Volume> for VolumeRecord {
     fn from(volume: &Volume) -> Self {
         VolumeRecord {
@@ -160,20 +176,6 @@ impl From<&Volume> for VolumeRecord {
             dims: volume.grid().dims(),
             index_to_lps_mm: volume.grid().index_to_lps_mm_rows(),
             value_range: volume.value_range(),
-        }
-    }
-}
-
-impl PictureRecord {
-    fn new(path: &Path, image: &Image) -> Self {
-        let mut hash = Sha256::new();
-        for channel in image.pixels().as_flattened() {
-            hash.update(channel.to_le_bytes());
-        }
-        PictureRecord {
-            file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            size: [image.width(), image.height()],
-            pixels_sha256: hexadecimal(&hash.finalize()),
         }
     }
 }
@@ -198,29 +200,33 @@ impl MethodRecord {
 }
 
 fn input_hashes(spec: &Spec) -> Vec<InputHash> {
-    let hash = |name: &str, text: &str| InputHash {
-        name: name.to_string(),
-        sha256: hexadecimal(&Sha256::digest(text.as_bytes())),
-    };
+    let hash = |name: &str, text: &str| InputHash { name: name.to_string(), sha256: digest::of_text(text) };
     let presets = spec.layers().filter_map(|(_, preset)| preset);
     let presets = presets.map(|loaded| hash(&loaded.preset.name, &loaded.text));
     std::iter::once(hash("pipeline", spec.text())).chain(presets).collect()
 }
 
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+/// The value without what stands at these key paths: the names of folders may be those of patients.
+fn without(mut value: Value, key_paths: &[&[&str]]) -> Value {
+    for key_path in key_paths {
+        let Some((last, parents)) = key_path.split_last() else { continue };
+        let parent = parents.iter().try_fold(&mut value, |value, key| value.get_mut(key));
+        if let Some(Value::Object(entries)) = parent {
+            entries.remove(*last);
+        }
+    }
+    value
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
-    fn pixels_are_hashed_as_little_endian_floats() {
-        let image = Image::from_pixels(1, 1, vec![[1.0, 0.0, 0.5, 1.0]]);
-        let record = PictureRecord::new(Path::new("out/a.png"), &image);
-        let bytes = [0, 0, 0x80, 0x3f, 0, 0, 0, 0, 0, 0, 0, 0x3f, 0, 0, 0x80, 0x3f];
-        assert_eq!(record.pixels_sha256, hexadecimal(&Sha256::digest(bytes)));
-        assert_eq!(record.file, "a.png", "the folder stays out: it may name a patient");
+    fn what_may_name_a_patient_is_taken_out_and_the_rest_stays() {
+        let pipeline = json!({ "volume": { "source": "scans/DOE^JANE", "series": "largest" }, "output": "x.png" });
+        let kept = without(pipeline, &[&["volume", "source"], &["output"], &["absent", "key"]]);
+        assert_eq!(kept, json!({ "volume": { "series": "largest" } }));
     }
 }
