@@ -1,5 +1,8 @@
 //! Pictures: linear, premultiplied RGBA in f32 until they are encoded.
 
+pub mod metrics;
+pub mod srgb;
+
 /// A picture in memory: linear RGB premultiplied by alpha, f32, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image {

@@ -11,8 +11,10 @@ pub mod whole_file;
 
 pub use load::{Format, format_of, load};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use crate::error::{Error, Fault, Result};
+use crate::image::Image;
 use crate::volume::Volume;
 
 /// A scan as read, with what its reader has to say about it.
@@ -37,4 +39,24 @@ pub struct FileFate {
     pub used: bool,
     /// Why it was used or left out, as one clause.
     pub reason: String,
+}
+
+/// A picture as read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// The pixels, linear and premultiplied.
+    pub image: Image,
+    /// Texts that the file holds, with their keywords.
+    pub texts: Vec<(String, String)>,
+}
+
+/// No picture with NaN or infinity leaves this program; a renderer that makes one has a bug.
+fn refuse_not_finite(path: &Path, image: &Image) -> Result<()> {
+    let Some(index) = image.pixels().iter().position(|pixel| pixel.iter().any(|v| !v.is_finite())) else {
+        return Ok(());
+    };
+    Err(Error::new(Fault::Internal, "a pixel is not a finite number")
+        .at(path)
+        .element(format!("column {}, row {}", index % image.width(), index / image.width()))
+        .found(format!("{:?}", image.pixels()[index])))
 }

@@ -8,6 +8,7 @@
 //! The value of a voxel is `slope · stored + intercept`, in HU for CT ([`Rescale`]). Samples stay at 16 bits in memory
 //! wherever the source has no more ([`Samples`]).
 
+mod digest;
 mod grid;
 mod samples;
 
