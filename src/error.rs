@@ -60,8 +60,11 @@ pub struct TextPlace {
 ///
 /// Built in one expression: `Error::new(Fault::Geometry, "…").at(path).element("slice 12").found("…").remedy("…")`.
 /// Boxed inside, so that `Result<T>` stays small.
+///
+/// The text of an error holds its causes, so [`std::error::Error::source`] gives none of them again; see [`Error::cause`].
 #[derive(Debug, thiserror::Error)]
-pub struct Error(#[source] Box<Details>);
+#[error("{0}")]
+pub struct Error(Box<Details>);
 
 #[derive(Debug)]
 struct Details {
@@ -169,47 +172,66 @@ impl Error {
         self.0.place.as_ref()
     }
 
+    /// What was found, where that was said.
+    pub fn found_text(&self) -> Option<&str> {
+        self.0.found.as_deref()
+    }
+
+    /// The error of a library behind this one.
+    pub fn cause(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.0.source.as_deref().map(|source| source as &(dyn std::error::Error + 'static))
+    }
+
+    /// The first line of the text: everything but the causes and the remedy.
+    pub fn headline(&self) -> String {
+        Headline(&self.0).to_string()
+    }
+
     /// What the user can do.
     pub fn remedy_text(&self) -> Option<&str> {
         self.0.remedy.as_deref()
     }
 }
 
-/// `path:line:column: what: element: found X, expected Y`, then the cause and the remedy on lines of their own.
-impl fmt::Display for Details {
+/// `path:line:column: what (element): found X, expected Y`.
+struct Headline<'a>(&'a Details);
+
+impl fmt::Display for Headline<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(path) = &self.path {
+        let Details { what, path, element, place, found, expected, .. } = self.0;
+        if let Some(path) = path {
             write!(f, "{}", path.display())?;
-            if let Some(place) = &self.place {
+            if let Some(place) = place {
                 write!(f, ":{}:{}", place.line, place.column)?;
             }
             f.write_str(": ")?;
         }
-        f.write_str(&self.what)?;
-        if let Some(element) = &self.element {
+        f.write_str(what)?;
+        if let Some(element) = element {
             write!(f, " ({element})")?;
         }
-        match (&self.found, &self.expected) {
-            (Some(found), Some(expected)) => write!(f, ": found {found}, expected {expected}")?,
-            (Some(found), None) => write!(f, ": found {found}")?,
-            (None, Some(expected)) => write!(f, ": expected {expected}")?,
-            (None, None) => {}
+        match (found, expected) {
+            (Some(found), Some(expected)) => write!(f, ": found {found}, expected {expected}"),
+            (Some(found), None) => write!(f, ": found {found}"),
+            (None, Some(expected)) => write!(f, ": expected {expected}"),
+            (None, None) => Ok(()),
         }
-        if let Some(source) = &self.source {
-            write!(f, "\n  cause: {source}")?;
+    }
+}
+
+/// The headline, then the chain of causes and the remedy on lines of their own.
+impl fmt::Display for Details {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Headline(self).fmt(f)?;
+        let mut cause = self.source.as_deref().map(|source| source as &dyn std::error::Error);
+        while let Some(this) = cause {
+            write!(f, "\n  cause: {this}")?;
+            cause = this.source();
         }
         if let Some(remedy) = &self.remedy {
             write!(f, "\n  remedy: {remedy}")?;
         }
         Ok(())
-    }
-}
-
-impl std::error::Error for Details {}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
     }
 }
 
@@ -231,5 +253,21 @@ mod tests {
              remedy: export the series again with all its slices"
         );
         assert_eq!(error.fault().exit_code(), 6, "geometry has its own exit code");
+    }
+
+    #[test]
+    fn every_cause_is_told_once() {
+        #[derive(Debug, thiserror::Error)]
+        #[error("the file is truncated")]
+        struct Truncated(#[source] std::io::Error);
+
+        let cause = Truncated(std::io::Error::other("unexpected end"));
+        let error = Error::new(Fault::Input, "the header could not be read").at("a.nrrd").caused_by(cause);
+        assert_eq!(
+            error.to_string(),
+            "a.nrrd: the header could not be read\n  cause: the file is truncated\n  cause: unexpected end"
+        );
+        assert_eq!(error.headline(), "a.nrrd: the header could not be read");
+        assert!(std::error::Error::source(&error).is_none(), "the text already holds the causes");
     }
 }

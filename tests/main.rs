@@ -5,6 +5,7 @@ mod cli;
 mod dicom;
 mod exact;
 mod hard_cases;
+mod house;
 mod image;
 mod layering;
 mod march;

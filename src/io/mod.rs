@@ -4,9 +4,12 @@
 
 pub mod dicom;
 pub mod exr;
+mod load;
 pub mod nrrd;
 pub mod png;
 pub mod whole_file;
+
+pub use load::{Format, format_of, load};
 
 use std::path::{Path, PathBuf};
 

@@ -57,6 +57,12 @@ impl Grid {
         self.index_to_lps_mm
     }
 
+    /// Voxel index to LPS millimetres as three rows of four numbers, `[r0 r1 r2 t]`, as files and programs exchange it.
+    pub fn index_to_lps_mm_rows(&self) -> [[f64; 4]; 3] {
+        let DAffine3 { matrix3: m, translation: t } = self.index_to_lps_mm;
+        std::array::from_fn(|row| [m.x_axis[row], m.y_axis[row], m.z_axis[row], t[row]])
+    }
+
     /// LPS millimetres to voxel index.
     pub fn lps_mm_to_index(&self) -> DAffine3 {
         self.lps_mm_to_index

@@ -1,0 +1,32 @@
+//! `pellucid explain`: the plan of a pipeline, in words or as JSON.
+
+use pellucid::Result;
+use pellucid::pipeline::{self, Options};
+use pellucid::plan::{explain, explain_json};
+use pellucid::spec::Spec;
+
+use super::{Format, PipelineArguments, stdout};
+
+/// Arguments of `pellucid explain`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Explain {
+    #[command(flatten)]
+    pipeline: PipelineArguments,
+
+    /// How the plan is printed
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+impl Explain {
+    /// Prints the plan; reads the scan, since a plan is for one volume, and renders nothing.
+    pub(super) fn run(&self) -> Result<()> {
+        let spec = Spec::load(&self.pipeline.pipeline, &self.pipeline.overrides())?;
+        let scan = pipeline::load(&spec)?;
+        let plan = pipeline::plan(&spec, &scan, &Options::default())?;
+        match self.format {
+            Format::Text => stdout::print(&explain(&plan)),
+            Format::Json => stdout::print_json(&explain_json(&plan)),
+        }
+    }
+}

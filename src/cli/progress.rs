@@ -1,0 +1,45 @@
+//! A progress bar on stderr, where that is a terminal.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pellucid::pipeline::Event;
+
+/// Shows how far a run is.
+pub(super) struct Bar {
+    bar: ProgressBar,
+}
+
+impl Bar {
+    /// A bar; hidden if `quiet` or where nobody watches.
+    pub(super) fn new(quiet: bool) -> Self {
+        let watched = !quiet && std::io::stderr().is_terminal();
+        let target = if watched { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(None, target);
+        bar.set_style(ProgressStyle::with_template("{spinner} {msg}").unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        Bar { bar }
+    }
+
+    /// Takes note of an event, from any thread.
+    pub(super) fn hear(&self, event: Event) {
+        match event {
+            Event::Stage(stage) => {
+                self.bar.set_message(stage);
+                self.bar.tick();
+            }
+            Event::Rays(pixels) => {
+                self.bar.set_length(pixels as u64);
+                let template = "{spinner} {msg} {bar:40} {percent}% {elapsed} left {eta}";
+                if let Ok(style) = ProgressStyle::with_template(template) {
+                    self.bar.set_style(style);
+                }
+            }
+            Event::Pixels(count) => self.bar.inc(count as u64),
+        }
+    }
+
+    /// Takes the bar off the screen.
+    pub(super) fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}

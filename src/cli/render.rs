@@ -1,0 +1,53 @@
+//! `pellucid render`: a pipeline to a picture and its sidecar.
+
+use std::path::PathBuf;
+
+use pellucid::Result;
+use pellucid::pipeline::{self, Options, Outcome};
+use pellucid::spec::Spec;
+
+use super::progress::Bar;
+use super::{Global, PipelineArguments, stderr, stdout};
+
+/// Arguments of `pellucid render`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Render {
+    #[command(flatten)]
+    pub(super) pipeline: PipelineArguments,
+
+    /// The picture to write, .png or .exr; that of the pipeline unless told
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+impl Render {
+    /// Renders; the picture's path goes to stdout, what it took to stderr.
+    pub(super) fn run(&self, global: &Global) -> Result<()> {
+        let spec = Spec::load(&self.pipeline.pipeline, &self.pipeline.overrides())?;
+        let bar = Bar::new(global.quiet);
+        let options = Options { output: self.output.clone() };
+        let outcome = pipeline::run(&spec, &options, &|event| bar.hear(event));
+        bar.clear();
+        let outcome = outcome?;
+        if !global.quiet {
+            stderr::say(&summary(&outcome));
+        }
+        stdout::print(&outcome.picture.display().to_string())
+    }
+}
+
+/// What a picture took, in a few lines.
+fn summary(outcome: &Outcome) -> String {
+    let sidecar = &outcome.sidecar;
+    let times: Vec<String> = sidecar.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
+    let memory = sidecar.peak_memory_bytes.map(|bytes| format!(", at most {} MB of memory", bytes / 1_000_000));
+    let clipped = &sidecar.clipped;
+    let mut lines = vec![
+        times.join(", "),
+        format!("{} on {} threads{}", sidecar.method.kernel, sidecar.threads, memory.unwrap_or_default()),
+        format!("{} of {} voxels below the window, {} above", clipped.below, clipped.voxels, clipped.above),
+    ];
+    lines.extend(sidecar.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.push(format!("how it was made: {}", outcome.sidecar_path.display()));
+    lines.join("\n")
+}

@@ -1,0 +1,143 @@
+//! The error of a finished picture, on random pixels, against the oracle.
+
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use crate::image::Image;
+use crate::oracle::Oracle;
+use crate::plan::{Method, Plan};
+use crate::volume::Volume;
+
+/// Chance that the statement of a [`Certificate`] is wrong.
+const RISK: f64 = 0.05;
+
+/// What random pixels of a picture say of its error: the largest difference to the oracle over the channels, linear and
+/// premultiplied.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Certificate {
+    /// Pixels that were recomputed, each at most once.
+    pub pixels: usize,
+    /// Largest error found.
+    pub largest_error: f64,
+    /// The error that 99.9 % of these pixels do not exceed.
+    pub error_of_999_in_1000: f64,
+    /// Pixels whose error is above the tolerance, where one was asked for.
+    pub above_tolerance: Option<usize>,
+    /// What follows for the whole picture.
+    pub statement: String,
+}
+
+impl Certificate {
+    /// Recomputes `count` pixels of a picture by the oracle, or all if it has no more.
+    ///
+    /// Which pixels is decided by a hash of the picture's own, so that nobody chooses them and anybody can repeat it.
+    pub(super) fn of(image: &Image, pixels_sha256: &str, volume: &Volume, plan: &Plan, count: usize) -> Self {
+        let oracle = Oracle::new(volume, &plan.scene);
+        let error = |&index: &usize| {
+            let (column, row) = (index % image.width(), index / image.width());
+            difference(image.pixel(column, row), oracle.pixel(column, row))
+        };
+        let chosen = chosen(pixels_sha256, image.pixels().len(), count);
+        let errors = chosen.par_iter().map(error).collect();
+        let tolerance = match plan.method {
+            Method::Exact(exact) => Some(exact.tolerance),
+            Method::March(_) | Method::Reference => None,
+        };
+        Certificate::from_errors(errors, image.pixels().len(), tolerance)
+    }
+
+    fn from_errors(mut errors: Vec<f64>, of_pixels: usize, tolerance: Option<f64>) -> Self {
+        errors.sort_by(f64::total_cmp);
+        let pixels = errors.len();
+        let rank = (0.999 * pixels as f64).ceil() as usize;
+        let above_tolerance = tolerance.map(|t| errors.iter().filter(|error| **error > t).count());
+        Certificate {
+            pixels,
+            largest_error: errors.last().copied().unwrap_or(0.0),
+            error_of_999_in_1000: rank.checked_sub(1).map_or(0.0, |index| errors[index]),
+            above_tolerance,
+            statement: statement(pixels, of_pixels, above_tolerance),
+        }
+    }
+}
+
+/// If a share p of all pixels were above, `pixels` random ones would all be below with the chance (1 - p)^pixels.
+fn statement(pixels: usize, of_pixels: usize, above_tolerance: Option<usize>) -> String {
+    match above_tolerance {
+        None => format!("{pixels} of {of_pixels} pixels recomputed; no tolerance was asked for"),
+        Some(0) if pixels == of_pixels => format!("all {pixels} pixels are within the tolerance"),
+        Some(0) => {
+            let share = 100.0 * (1.0 - RISK.powf(1.0 / pixels as f64));
+            let confidence = 100.0 * (1.0 - RISK);
+            format!("0 of {pixels} above tolerance: fewer than {share:.2} % of all pixels, at {confidence:.0} % confidence")
+        }
+        Some(above) => format!("{above} of {pixels} above tolerance"),
+    }
+}
+
+/// Largest difference over the channels; a NaN counts as infinite.
+fn difference(found: [f32; 4], truth: [f64; 4]) -> f64 {
+    let channels = found.iter().zip(truth).map(|(&found, truth)| (f64::from(found) - truth).abs());
+    channels.map(|d| if d.is_nan() { f64::INFINITY } else { d }).fold(0.0, f64::max)
+}
+
+/// `count` different numbers below `of`, or all of them.
+fn chosen(seed: &str, of: usize, count: usize) -> Vec<usize> {
+    if count >= of {
+        return (0..of).collect();
+    }
+    let mut chosen = BTreeSet::new();
+    for counter in 0_u64.. {
+        if chosen.len() == count {
+            break;
+        }
+        let hash = Sha256::new().chain_update(seed).chain_update(counter.to_le_bytes()).finalize();
+        let number = hash.iter().take(8).fold(0_u64, |number, byte| number << 8 | u64::from(*byte));
+        // 64 bits over at most 2^32 pixels: the share by which some are favoured is below 2^-32.
+        chosen.insert((number % of as u64) as usize);
+    }
+    chosen.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_above_the_tolerance_is_found_and_counted() {
+        let mut errors = vec![0.001; 999];
+        errors.push(0.5);
+        let certificate = Certificate::from_errors(errors, 4000, Some(0.004));
+        assert_eq!((certificate.largest_error, certificate.error_of_999_in_1000), (0.5, 0.001));
+        assert_eq!(certificate.above_tolerance, Some(1));
+        assert_eq!(certificate.statement, "1 of 1000 above tolerance");
+    }
+
+    #[test]
+    fn no_error_among_3000_supports_a_tenth_of_a_percent() {
+        let certificate = Certificate::from_errors(vec![0.0; 3000], 1 << 20, Some(0.004));
+        assert_eq!(
+            certificate.statement,
+            "0 of 3000 above tolerance: fewer than 0.10 % of all pixels, at 95 % confidence"
+        );
+    }
+
+    #[test]
+    fn a_pixel_that_is_no_number_is_infinitely_wrong() {
+        assert_eq!(difference([f32::NAN, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]), f64::INFINITY);
+        assert_eq!(difference([0.0, 0.25, 0.0, 1.0], [0.0, 0.5, 0.125, 1.0]), 0.25);
+    }
+
+    #[test]
+    fn pixels_are_chosen_once_each_and_the_same_each_time() {
+        let first = chosen("seed", 1000, 600);
+        assert_eq!(first.len(), 600);
+        assert!(first.windows(2).all(|pair| pair[0] < pair[1]) && first[599] < 1000, "different and in range");
+        assert_eq!(first, chosen("seed", 1000, 600));
+        assert_ne!(first, chosen("other", 1000, 600));
+        assert_eq!(chosen("seed", 3, 10), [0, 1, 2]);
+    }
+}

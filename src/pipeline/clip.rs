@@ -1,0 +1,54 @@
+//! What the fixed window of values cuts off.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::volume::{Samples, Volume};
+
+/// How many voxels lie outside the window of the transfer function; they are treated as at its ends.
+///
+/// The window is fixed and written down, never the volume's own minimum and maximum: one metal clip would move every
+/// tissue. So what it cuts off is counted and said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Clipped {
+    /// Voxels below the window.
+    pub below: u64,
+    /// Voxels above the window.
+    pub above: u64,
+    /// Voxels in all.
+    pub voxels: u64,
+}
+
+impl Clipped {
+    /// Counts the voxels of a volume outside `[low, high]`, in its values.
+    pub fn count(volume: &Volume, [low, high]: [f64; 2]) -> Self {
+        let rescale = volume.rescale();
+        let outside = |stored: f64| {
+            let value = rescale.value(stored);
+            (u64::from(value < low), u64::from(value > high))
+        };
+        let add = |a: (u64, u64), b: (u64, u64)| (a.0 + b.0, a.1 + b.1);
+        let (below, above) = match volume.samples() {
+            Samples::I16(data) => data.par_iter().map(|&v| outside(f64::from(v))).reduce(|| (0, 0), add),
+            Samples::F32(data) => data.par_iter().map(|&v| outside(f64::from(v))).reduce(|| (0, 0), add),
+        };
+        Clipped { below, above, voxels: volume.samples().len() as u64 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::volume::{Grid, Quantity, Rescale};
+    use glam::DVec3;
+
+    #[test]
+    fn values_outside_the_window_are_counted_and_its_ends_are_inside() {
+        let grid = Grid::axis_aligned([5, 1, 1], DVec3::ONE).expect("a valid grid");
+        let rescale = Rescale { slope: -2.0, intercept: 10.0 };
+        // Values 12, 10, 8, 6, 4.
+        let samples = Samples::I16(vec![-1, 0, 1, 2, 3]);
+        let volume = Volume::new(grid, samples, rescale, Quantity::Hu).expect("a valid volume");
+        assert_eq!(Clipped::count(&volume, [6.0, 10.0]), Clipped { below: 1, above: 1, voxels: 5 });
+    }
+}

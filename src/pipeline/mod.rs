@@ -1,0 +1,141 @@
+//! From a spec to a picture: load, plan, clip, integrate, encode, and a sidecar that says how it was made.
+
+mod certify;
+mod clip;
+mod digest;
+mod load;
+mod measure;
+mod sidecar;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Fault, Result};
+use crate::image::Image;
+use crate::integrate::{self, Rendered};
+use crate::io::{Scan, exr, png};
+use crate::plan::{Format, Output, Plan, VolumeInfo};
+use crate::spec::Spec;
+
+pub use certify::Certificate;
+pub use clip::Clipped;
+pub use load::load;
+pub use measure::StageTime;
+pub use sidecar::Sidecar;
+
+use measure::Stopwatch;
+use sidecar::Made;
+
+/// What is not written in the pipeline.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// The picture's file, relative to the working directory; that of the pipeline by default.
+    pub output: Option<PathBuf>,
+}
+
+/// How far a run is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// A stage begins.
+    Stage(&'static str),
+    /// Rays begin, for a picture of so many pixels.
+    Rays(usize),
+    /// So many pixels more are done.
+    Pixels(usize),
+}
+
+/// Called with each event, from any thread.
+pub type Progress<'a> = &'a (dyn Fn(Event) + Sync);
+
+/// A picture on disk.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// The picture.
+    pub picture: PathBuf,
+    /// The sidecar next to it.
+    pub sidecar_path: PathBuf,
+    /// What the sidecar says.
+    pub sidecar: Sidecar,
+}
+
+/// Renders a pipeline and writes the picture with its sidecar, each whole or not at all.
+///
+/// # Errors
+/// Those of each stage; nothing is written if one fails before the picture is complete. `Fault::Tolerance` if the picture
+/// was certified and found not to be within its tolerance; then it and its sidecar are there to be looked at.
+pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Outcome> {
+    let mut stopwatch = Stopwatch::start(progress);
+    let scan = stopwatch.time("load", || load(spec))?;
+    let plan = stopwatch.time("plan", || plan(spec, &scan, options))?;
+    let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
+    prepare_folder(&plan.output.path)?;
+    let rendered = stopwatch.time("integrate", || integrate(&scan, &plan, progress))?;
+    let pixels_sha256 = digest::of_pixels(&rendered.image);
+    let certificate = plan.certify.map(|count| {
+        stopwatch.time("certify", || Certificate::of(&rendered.image, &pixels_sha256, &scan.volume, &plan, count))
+    });
+    stopwatch.time("encode", || encode(&rendered.image, &plan.output, &texts(&rendered, &pixels_sha256)))?;
+    let made = Made { clipped, rendered: &rendered, pixels_sha256, certificate, stages: stopwatch.finish() };
+    let sidecar = Sidecar::new(spec, &scan, &plan, made);
+    let sidecar_path = sidecar.write_beside(&plan.output.path)?;
+    refuse_above_tolerance(&plan.output.path, sidecar.certificate.as_ref())?;
+    Ok(Outcome { picture: plan.output.path, sidecar_path, sidecar })
+}
+
+/// The plan for a scan, with its picture where the caller wants it.
+///
+/// # Errors
+/// As [`Plan::new`], and `Fault::Spec` for a picture whose suffix names no format.
+pub fn plan(spec: &Spec, scan: &Scan, options: &Options) -> Result<Plan> {
+    Plan::new(spec, &VolumeInfo::from(&scan.volume), options.output.as_deref())
+}
+
+fn integrate(scan: &Scan, plan: &Plan, progress: Progress<'_>) -> Result<Rendered> {
+    progress(Event::Rays(plan.scene.camera.size().iter().product()));
+    let pixels = |count| progress(Event::Pixels(count));
+    integrate::render(&scan.volume, &plan.scene, &plan.method, &pixels)
+}
+
+/// What the picture's file says of itself, for those who have lost its sidecar.
+fn texts(rendered: &Rendered, pixels_sha256: &str) -> Vec<(String, String)> {
+    let texts = [
+        ("Software", concat!("pellucid ", env!("CARGO_PKG_VERSION"))),
+        ("pellucid kernel", &rendered.statistics.kernel),
+        ("pellucid pixels SHA-256", pixels_sha256),
+    ];
+    texts.map(|(keyword, text)| (keyword.to_string(), text.to_string())).to_vec()
+}
+
+fn encode(image: &Image, output: &Output, texts: &[(String, String)]) -> Result<()> {
+    match output.format {
+        Format::Png8 => png::write(&output.path, image, png::Depth::Eight, texts),
+        Format::Png16 => png::write(&output.path, image, png::Depth::Sixteen, texts),
+        Format::Exr => exr::write(&output.path, image, texts),
+    }
+}
+
+fn refuse_above_tolerance(picture: &Path, certificate: Option<&Certificate>) -> Result<()> {
+    match certificate {
+        Some(Certificate { above_tolerance: Some(above), largest_error, statement, .. }) if *above > 0 => {
+            Err(Error::new(Fault::Tolerance, "the picture is not within its tolerance")
+                .at(picture)
+                .found(format!("{statement}, the largest error {largest_error:.3e}"))
+                .remedy("report it with the pipeline: the method's bound should have held"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Makes the picture's folder before the first ray, so that hours of rays do not end at a folder that is not there.
+fn prepare_folder(picture: &Path) -> Result<()> {
+    let folder = picture.parent().unwrap_or(Path::new(""));
+    if folder.as_os_str().is_empty() {
+        return Ok(());
+    }
+    fs::create_dir_all(folder).map_err(|cause| {
+        Error::new(Fault::Output, "the folder of the picture could not be made")
+            .at(folder)
+            .remedy("write elsewhere with -o, or make the folder writable")
+            .caused_by(cause)
+    })
+}
