@@ -42,7 +42,15 @@ fn volume_rows(volume: &VolumeReport) -> Vec<(String, String)> {
     let rows = [
         ("dimensions", format!("{nx} x {ny} x {nz} voxels")),
         ("spacing", format!("{sx:.4} x {sy:.4} x {sz:.4} mm")),
-        ("axes", ["i", "j", "k"].iter().enumerate().map(|(axis, name)| direction(volume, axis, name)).collect::<Vec<_>>().join(", ")),
+        (
+            "axes",
+            ["i", "j", "k"]
+                .iter()
+                .enumerate()
+                .map(|(axis, name)| direction(volume, axis, name))
+                .collect::<Vec<_>>()
+                .join(", "),
+        ),
         ("first voxel", format!("({x:.3}, {y:.3}, {z:.3}) mm, LPS")),
         ("values", format!("{low} to {high}{unit}")),
         ("values SHA-256", volume.values_sha256.clone()),
