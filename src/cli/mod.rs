@@ -148,15 +148,7 @@ mod tests {
     #[test]
     fn overrides_keep_their_order_and_values_may_hold_equal_signs() {
         let read = Arguments::try_parse_from([
-            "pellucid",
-            "render",
-            "p.yaml",
-            "--set",
-            "a.b=c=d",
-            "--size",
-            "640x480",
-            "--set",
-            "x=1",
+            "pellucid", "render", "p.yaml", "--set", "a.b=c=d", "--size", "640x480", "--set", "x=1",
         ]);
         let Command::Render(render) = read.expect("a valid command line").command else { panic!("not render") };
         assert_eq!(render.pipeline.overrides(), ["a.b=c=d", "x=1", "image.size=[640, 480]"]);

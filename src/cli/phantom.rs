@@ -56,8 +56,7 @@ impl Phantom {
             stdout::print(&path.display().to_string())?;
         }
         if let Some(folder) = &head.dicom {
-            let description =
-                SeriesDescription { description: "pellucid head phantom".to_string(), seed: head.seed };
+            let description = SeriesDescription { description: "pellucid head phantom".to_string(), seed: head.seed };
             write_series(folder, &volume, &description)?;
             stdout::print(&folder.display().to_string())?;
         }

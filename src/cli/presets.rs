@@ -50,7 +50,8 @@ fn text(name: &str) -> Result<&'static str> {
     let names: Vec<&str> = BUILT_IN_PRESETS.iter().map(|(name, _)| *name).collect();
     let similarity = |known: &&str| strsim::jaro_winkler(known, name);
     let nearest = names.iter().copied().max_by(|a, b| similarity(a).total_cmp(&similarity(b)));
-    let error = Error::new(Fault::Spec, "there is no such preset").found(name).expected(format!("one of {}", names.join(", ")));
+    let error =
+        Error::new(Fault::Spec, "there is no such preset").found(name).expected(format!("one of {}", names.join(", ")));
     Err(match nearest.filter(|known| similarity(known) > 0.7) {
         Some(known) => error.remedy(format!("did you mean {known}?")),
         None => error,

@@ -48,9 +48,9 @@ struct Marked {
 impl Marked {
     fn of(error: &Error) -> Option<Marked> {
         let place = error.text_place()?;
-        let (offset, length) = place.span.unwrap_or_else(|| {
-            (SourceOffset::from_location(&place.text, place.line, place.column).offset(), 1)
-        });
+        let (offset, length) = place
+            .span
+            .unwrap_or_else(|| (SourceOffset::from_location(&place.text, place.line, place.column).offset(), 1));
         if place.text.is_empty() || offset > place.text.len() {
             return None;
         }

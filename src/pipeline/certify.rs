@@ -72,7 +72,9 @@ fn statement(pixels: usize, of_pixels: usize, above_tolerance: Option<usize>) ->
         Some(0) => {
             let share = 100.0 * (1.0 - RISK.powf(1.0 / pixels as f64));
             let confidence = 100.0 * (1.0 - RISK);
-            format!("0 of {pixels} above tolerance: fewer than {share:.2} % of all pixels, at {confidence:.0} % confidence")
+            format!(
+                "0 of {pixels} above tolerance: fewer than {share:.2} % of all pixels, at {confidence:.0} % confidence"
+            )
         }
         Some(above) => format!("{above} of {pixels} above tolerance"),
     }

@@ -150,9 +150,8 @@ impl Sidecar {
         let mut name = picture.as_os_str().to_owned();
         name.push(".json");
         let path = PathBuf::from(name);
-        let text = serde_json::to_string_pretty(self).map_err(|cause| {
-            Error::new(Fault::Internal, "the sidecar has no JSON form").at(&path).caused_by(cause)
-        })?;
+        let text = serde_json::to_string_pretty(self)
+            .map_err(|cause| Error::new(Fault::Internal, "the sidecar has no JSON form").at(&path).caused_by(cause))?;
         whole_file::write(&path, |file| std::io::Write::write_all(file, format!("{text}\n").as_bytes()))?;
         Ok(path)
     }

@@ -4,7 +4,9 @@ use super::program::{Folder, pellucid};
 
 #[test]
 fn a_command_line_that_cannot_be_read_is_2() {
-    for arguments in [&["rendr", "x.yaml"][..], &["render"], &["render", "x.yaml", "--size", "12"], &["phantom", "head"]] {
+    for arguments in
+        [&["rendr", "x.yaml"][..], &["render"], &["render", "x.yaml", "--size", "12"], &["phantom", "head"]]
+    {
         let run = pellucid(arguments);
         assert_eq!(run.code, Some(2), "pellucid {}:\n{}", run.arguments, run.stderr);
         assert_eq!(run.stdout, "", "usage errors are on stderr");
@@ -14,7 +16,8 @@ fn a_command_line_that_cannot_be_read_is_2() {
 #[test]
 fn an_unknown_key_is_3_with_its_place_and_a_suggestion() {
     let folder = Folder::new("unknown_key");
-    let text = "version: 1\nvolume: { phantom: { head: {} } }\ntransfer_function:\n  - preset: bone\ncamera:\n  azimut: 25\n";
+    let text =
+        "version: 1\nvolume: { phantom: { head: {} } }\ntransfer_function:\n  - preset: bone\ncamera:\n  azimut: 25\n";
     let pipeline = folder.write("typo.yaml", text);
     let run = pellucid(&["render", &pipeline]).failure(3);
     let first = run.stderr.lines().next().unwrap_or_default().to_string();
@@ -61,10 +64,18 @@ fn a_series_with_a_gap_is_6() {
     let folder = Folder::new("gap");
     let series = folder.path("series");
     pellucid(&["phantom", "head", "--size", "16", "--dicom", &series]).success();
-    let mut slices: Vec<_> = std::fs::read_dir(&series).expect("written").map(|e| e.expect("readable").path()).collect();
+    let mut slices: Vec<_> =
+        std::fs::read_dir(&series).expect("written").map(|e| e.expect("readable").path()).collect();
     slices.sort();
     std::fs::remove_file(&slices[slices.len() / 2]).expect("a slice is taken out");
-    let run = pellucid(&["render", &folder.pipeline(), "--set", "volume.phantom=null", "--set", &format!("volume.source={series}")]);
+    let run = pellucid(&[
+        "render",
+        &folder.pipeline(),
+        "--set",
+        "volume.phantom=null",
+        "--set",
+        &format!("volume.source={series}"),
+    ]);
     run.failure(6).says(&["mm"]);
     assert_eq!(folder.names(), ["head.yaml", "series"], "nothing was written");
 }

@@ -59,7 +59,8 @@ fn what_cannot_be_rendered_is_described_all_the_same() {
     let folder = Folder::new("refused");
     let series = folder.path("series");
     pellucid(&["phantom", "head", "--size", "16", "--dicom", &series]).success();
-    let mut slices: Vec<_> = std::fs::read_dir(&series).expect("written").map(|e| e.expect("readable").path()).collect();
+    let mut slices: Vec<_> =
+        std::fs::read_dir(&series).expect("written").map(|e| e.expect("readable").path()).collect();
     slices.sort();
     std::fs::remove_file(&slices[slices.len() / 2]).expect("a slice is taken out");
     let run = pellucid(&["info", &series, "--format", "json"]);
