@@ -1,6 +1,6 @@
 //! The exact integrator against the oracle: every pixel within the tolerance, and within the bound it reports.
 
-use crate::support::scenes::{lit, rough_volume, scene_around, thin_shell, two_colors};
+use crate::support::scenes::{two_lights, rough_volume, scene_around, thin_shell, two_colors};
 use pellucid::integrate::exact::{Precision, tracer};
 use pellucid::oracle::Oracle;
 use pellucid::scene::Scene;
@@ -39,8 +39,8 @@ fn every_pixel_is_within_tolerance_and_bound() {
     for (name, terms, shading) in [
         ("1D", vec![two_colors()], None),
         ("2D", shell.clone(), None),
-        ("1D lit", vec![two_colors()], Some(lit(true))),
-        ("2D lit, one-sided", shell, Some(lit(false))),
+        ("1D lit", vec![two_colors()], Some(two_lights(true))),
+        ("2D lit, one-sided", shell, Some(two_lights(false))),
     ] {
         let scene = scene_around(&volume, terms, shading, [24, 24]);
         for tolerance in [1.0 / 255.0, 1e-3, 1e-4] {
@@ -85,7 +85,7 @@ fn tangential_crossings_of_jumps_hold_in_f32() {
 #[test]
 fn a_tighter_tolerance_is_never_worse() {
     let volume = rough_volume(10);
-    let scene = scene_around(&volume, vec![two_colors(), thin_shell()], Some(lit(true)), [16, 16]);
+    let scene = scene_around(&volume, vec![two_colors(), thin_shell()], Some(two_lights(true)), [16, 16]);
     let mut last = f64::INFINITY;
     for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
         let (error, _) = held_against_the_oracle(&volume, &scene, tolerance, Precision::Double);

@@ -143,18 +143,28 @@ mod tests {
         assert_eq!(found.optical_depth, 0.0);
     }
 
+    /// Error of the rule at its limit for extinction and emission that wave as much as their degree allows.
+    fn error_at<const N: usize>(limit: f64, extinction: [f64; N], emission: [f64; N]) -> f64 {
+        let depth_per_mm = limit / Bernstein(extinction).mean();
+        let none = Bernstein([0.0; N]);
+        let channels = [Bernstein(extinction.map(|s| s * depth_per_mm)), Bernstein(emission), none, none];
+        let panel = Panel { channels, length_mm: 1.0 };
+        (light_of(limit, &panel).rgb[0] - light_of(limit / 100.0, &panel).rgb[0]).abs()
+    }
+
     #[test]
     fn panels_within_the_limits_need_no_halving() {
-        // Extinction that turns four times: the hardest shape for the quadrature at these degrees.
-        let wavy = [0.0, 0.0, 6.0, -5.0, 6.0, 0.0, 0.0];
-        let scale = 1.0 / Bernstein(wavy).mean();
-        let channels = [wavy.map(|c| c * scale), [1.0; 7], [0.0, 3.0, -2.0, 4.0, -2.0, 3.0, 0.0], [0.0; 7]];
-        for depth in [0.01, 0.25] {
-            let panel = Panel { channels: channels.map(Bernstein).map(|c| c.map(|x| x * depth)), length_mm: 1.0 };
-            let (coarse, fine) = (light_of(0.25, &panel), light_of(1e-3, &panel));
-            let error = coarse.rgb[1] - fine.rgb[1];
-            assert!(error.abs() < 1e-14, "depth {depth}: error {error:e}");
+        // 1 + T₃ and 1 - T₃, Chebyshev polynomials on [0, 1]; 1 + T₆ and 1 - T₆.
+        let (cubic, mirrored) = ([0.0, 6.0, -4.0, 2.0], [2.0, -4.0, 6.0, 0.0]);
+        let sextic = [2.0, -10.0, 34.0, -45.2, 34.0, -10.0, 2.0];
+        let falling = sextic.map(|c| 2.0 - c);
+        for (name, error, bound) in
+            [("cubic", error_at(1.0, cubic, mirrored), 1e-14), ("sextic", error_at(0.25, sextic, falling), 1e-14)]
+        {
+            assert!(error < bound, "{name}: error {error:e}");
         }
+        let error = error_at(4.0, sextic, falling);
+        assert!(error > 1e-12, "beyond its limit the rule is seen to be wrong: error {error:e}");
     }
 
     #[test]

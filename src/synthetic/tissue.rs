@@ -33,6 +33,7 @@ pub(super) const WHITE: Material = Material::Uniform(WHITE_MATTER_HU);
 pub(super) const MUSCLE: Material = Material::Uniform(55.0);
 pub(super) const DURA: Material = Material::Uniform(60.0);
 pub(super) const LENS: Material = Material::Uniform(90.0);
+pub(super) const DISC: Material = Material::Uniform(90.0);
 pub(super) const THYROID: Material = Material::Uniform(110.0);
 pub(super) const SUTURE: Material = Material::Uniform(250.0);
 pub(super) const CARTILAGE: Material = Material::Uniform(130.0);

@@ -5,8 +5,7 @@ use crate::synthetic::sdf::{Solid, blend, ellipsoid, rod, sphere, tube};
 /// Both auricles: a plate that stands off the head, with the rim (helix), the inner fold (antihelix), the tragus in
 /// front of the canal and the lobule.
 pub(super) fn auricles() -> Solid {
-    let plate =
-        ellipsoid((0.0, 0.0, 0.0), (16.0, 3.0, 28.0)).placed((82.0, 14.0, 4.0), (0.45, 0.89, 0.0), (0.12, 0.1, 1.0));
+    let plate = ellipsoid((0.0, 0.0, 0.0), (16.0, 3.0, 28.0)).placed((82.0, 14.0, 4.0), (0.45, 0.89, 0.0), (0.12, 0.1, 1.0));
     let helix = tube(&[
         (77.0, 7.0, 2.0, 2.0),
         (79.0, -1.0, 12.0, 2.6),
@@ -25,8 +24,8 @@ pub(super) fn auricles() -> Solid {
         (84.5, 15.0, -10.0, 2.4),
         (81.0, 6.0, -14.0, 2.6),
     ]);
-    let tragus = ellipsoid((74.5, -3.5, -2.0), (4.0, 5.0, 7.0));
-    let lobule = ellipsoid((78.0, 7.0, -24.0), (3.4, 8.0, 7.5));
+    let tragus = ellipsoid((73.5, -4.0, -2.0), (4.5, 6.0, 8.0));
+    let lobule = ellipsoid((77.5, 8.0, -22.0), (3.2, 7.5, 8.0));
     let root = ellipsoid((72.0, 12.0, 2.0), (10.0, 9.0, 20.0));
     blend(5.0, [plate, helix, antihelix, tragus, lobule, root]).mirrored()
 }

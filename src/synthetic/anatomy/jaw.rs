@@ -1,12 +1,12 @@
 //! The lower jaw and the hyoid bone.
 
-use crate::synthetic::sdf::{Solid, blend, ellipsoid, rod, tube};
+use crate::synthetic::sdf::{Solid, blend, block, ellipsoid, rod, tube};
 use crate::synthetic::tissue::{CORTICAL, DIPLOE, Tissue};
 
 /// Mandible and hyoid.
 pub(super) fn tissues() -> Vec<Tissue> {
-    let hyoid = tube(&[(0.0, -43.0, -92.0, 3.2), (12.0, -39.0, -92.0, 2.6), (22.0, -22.0, -88.0, 1.8)]).mirrored();
-    vec![Tissue::new(CORTICAL, mandible()).core(1.9, DIPLOE).beneath_skin(2.6), Tissue::new(CORTICAL, hyoid)]
+    let hyoid = tube(&[(0.0, -39.0, -97.0, 3.2), (12.0, -35.0, -97.0, 2.6), (22.0, -20.0, -93.0, 1.8)]).mirrored();
+    vec![Tissue::new(CORTICAL, mandible()).core(1.9, DIPLOE).beneath_skin(2.6), Tissue::new(CORTICAL, hyoid).beneath_skin(3.0)]
 }
 
 fn mandible() -> Solid {
@@ -31,11 +31,12 @@ fn mandible() -> Solid {
         (30.0, -52.0, -59.5, 5.6),
         (39.0, -36.0, -56.0, 5.0),
     ]);
-    let ramus_behind = tube(&[(49.0, -15.0, -61.0, 4.8), (50.5, -10.0, -40.0, 4.2), (51.0, -11.0, -14.0, 4.0)]);
-    let ramus_between = tube(&[(45.0, -26.0, -60.0, 4.8), (48.5, -23.0, -40.0, 3.8), (50.0, -24.0, -24.0, 3.2)]);
-    let ramus_before = tube(&[(41.0, -36.0, -57.0, 4.8), (46.5, -36.0, -40.0, 3.6), (49.0, -38.0, -14.0, 2.6)]);
+    let ramus = block((0.0, 0.0, 0.0), (3.6, 15.5, 21.0), 3.5).placed((48.0, -24.5, -42.0), (1.0, 0.12, 0.0), (0.06, 0.08, 1.0));
+    let coronoid = rod(&[(48.5, -34.0, -28.0, 3.8), (49.5, -37.5, -10.0, 2.4)]);
+    let neck = rod(&[(50.0, -14.0, -30.0, 4.0), (50.5, -12.0, -10.0, 3.8)]);
+    let angle = rod(&[(47.0, -22.0, -64.0, 4.6), (49.0, -14.0, -58.0, 4.4)]);
     let condyle = rod(&[(45.0, -12.0, -7.0, 4.4), (55.0, -12.0, -6.0, 4.4)]);
     let chin = ellipsoid((0.0, -88.0, -81.0), (9.0, 4.5, 5.5));
-    let half = blend(9.0, [lower_border, body, alveolar, ramus_behind, ramus_between, ramus_before, condyle]);
-    blend(8.0, [half.mirrored(), chin])
+    let half = blend(13.0, [blend(16.0, [lower_border, body, alveolar]), ramus, angle]);
+    blend(8.0, [blend(8.0, [half, coronoid, neck, condyle]).mirrored(), chin])
 }

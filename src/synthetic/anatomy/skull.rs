@@ -38,7 +38,7 @@ fn braincase() -> Solid {
 
 /// The room for the brain.
 pub(super) fn cavity() -> Solid {
-    let orbital_roofs = eye::orbits().grown(2.2);
+    let orbital_roofs = eye::orbits().grown(3.0);
     let midline = tube(&[
         (0.0, -78.0, 25.0, 9.0),
         (0.0, -55.0, 18.0, 12.0),
@@ -81,8 +81,7 @@ fn face() -> Solid {
         (60.0, 2.0, 2.0, 5.0),
     ]);
     let maxilla = ellipsoid((22.0, -64.0, -14.0), (19.0, 21.0, 18.0));
-    let pillar =
-        tube(&[(8.0, -87.0, 22.0, 4.0), (13.5, -86.0, 4.0, 4.5), (16.5, -85.0, -14.0, 4.5), (17.0, -84.0, -30.0, 5.0)]);
+    let pillar = tube(&[(8.0, -87.0, 22.0, 4.0), (13.5, -86.0, 4.0, 4.5), (16.5, -85.0, -14.0, 4.5), (17.0, -84.0, -30.0, 5.0)]);
     let alveolar = tube(&[
         (0.0, -88.5, -32.0, 5.5),
         (14.0, -85.5, -32.0, 5.5),
@@ -93,7 +92,7 @@ fn face() -> Solid {
     let nasal_bone = tube(&[(2.5, -87.0, 32.0, 5.0), (3.0, -90.0, 20.0, 4.0), (3.0, -97.0, 6.0, 2.8)]);
     let greater_wing = ellipsoid((42.0, -56.0, 12.0), (7.0, 17.0, 20.0));
     let rims = blend(6.0, [brow, lateral_rim, lower_rim, nasal_bone, pillar]);
-    let cheek = blend(7.0, [zygoma, arch, maxilla, alveolar, greater_wing]);
+    let cheek = blend(10.0, [zygoma, arch, maxilla, alveolar, greater_wing]);
     let spine = rod(&[(0.0, -88.0, -27.0, 3.5), (0.0, -94.0, -26.0, 1.4)]);
     blend(5.0, [forehead, blend(6.0, [rims, cheek]).mirrored(), spine])
 }
@@ -115,7 +114,7 @@ fn hard_palate() -> Solid {
 }
 
 fn mastoid_cells() -> Solid {
-    rod(&[(56.0, 16.0, -2.0, 8.0), (54.0, 14.0, -20.0, 4.0)]).mirrored()
+    rod(&[(55.0, 16.0, -3.0, 7.0), (54.0, 14.0, -20.0, 3.4)]).mirrored()
 }
 
 /// The seams between frontal, parietal and occipital bones, in the outer table.
@@ -132,8 +131,10 @@ fn sutures() -> Solid {
     let coronal = seam((0.0, -10.0, 124.0), (0.0, 0.94, -0.34));
     let between = [half_space((0.0, -10.0, 124.0), (0.0, -0.94, 0.34)), half_space((0.0, 76.0, 90.0), (0.0, 1.0, 0.0))];
     let sagittal = common(0.1, between.into_iter().chain([seam((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))]));
-    let lambdoid =
-        common(0.1, [seam((0.0, 76.0, 90.0), (0.62, 0.66, -0.42)), half_space((0.0, 50.0, 0.0), (0.0, -1.0, 0.0))]);
+    let lambdoid = common(
+        0.1,
+        [seam((0.0, 76.0, 90.0), (0.62, 0.66, -0.42)), half_space((0.0, 50.0, 0.0), (0.0, -1.0, 0.0))],
+    );
     outer_table(blend(0.1, [coronal, sagittal, lambdoid.mirrored()]))
 }
 

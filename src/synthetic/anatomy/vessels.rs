@@ -1,6 +1,7 @@
 //! Vessels filled with contrast medium.
 
-use crate::synthetic::sdf::{Node, Solid, blend, sphere, tube};
+use super::skull;
+use crate::synthetic::sdf::{Node, Solid, blend, common, sphere, tube};
 use crate::synthetic::tissue::{CONTRAST, Tissue};
 
 /// Arteries and veins, one tissue each, so that far ones are skipped.
@@ -17,12 +18,16 @@ pub(super) fn tissues() -> Vec<Tissue> {
         &ANTERIOR_CEREBRAL,
         &POSTERIOR_CEREBRAL,
         &POSTERIOR_COMMUNICATING,
-        &TRANSVERSE_SINUS,
+        &JUGULAR,
     ];
     let mut tissues: Vec<Tissue> =
         paired.into_iter().map(|nodes| Tissue::new(CONTRAST, tube(nodes).mirrored()).beneath_skin(2.2)).collect();
-    let single: [&[Node]; 4] = [&BASILAR, &ANTERIOR_COMMUNICATING, &SAGITTAL_SINUS, &STRAIGHT_SINUS];
+    let single: [&[Node]; 3] = [&BASILAR, &ANTERIOR_COMMUNICATING, &STRAIGHT_SINUS];
     tissues.extend(single.into_iter().map(|nodes| Tissue::new(CONTRAST, tube(nodes))));
+    for sinus in [tube(&SAGITTAL_SINUS), tube(&TRANSVERSE_SINUS).mirrored()] {
+        // Sinuses run in the dura, flat against the bone.
+        tissues.push(Tissue::new(CONTRAST, common(0.5, [sinus, skull::cavity().grown(0.4)])));
+    }
     tissues.push(Tissue::new(CONTRAST, aneurysm()));
     tissues
 }
@@ -49,13 +54,8 @@ const COMMON_AND_INTERNAL_CAROTID: [Node; 15] = [
     (11.0, -26.0, 27.0, 2.3),
     (14.0, -24.0, 32.0, 2.2),
 ];
-const EXTERNAL_CAROTID: [Node; 5] = [
-    (27.0, -15.0, -96.0, 2.8),
-    (31.0, -19.0, -80.0, 2.3),
-    (38.0, -12.0, -58.0, 2.1),
-    (47.0, -4.0, -34.0, 1.9),
-    (56.0, -5.0, -12.0, 1.7),
-];
+const EXTERNAL_CAROTID: [Node; 5] =
+    [(27.0, -15.0, -96.0, 2.8), (31.0, -19.0, -80.0, 2.3), (38.0, -12.0, -58.0, 2.1), (47.0, -4.0, -34.0, 1.9), (56.0, -5.0, -12.0, 1.7)];
 const SUPERFICIAL_TEMPORAL: [Node; 8] = [
     (56.0, -5.0, -12.0, 1.7),
     (67.0, -9.0, 8.0, 1.4),
@@ -86,8 +86,7 @@ const VERTEBRAL: [Node; 9] = [
     (6.0, 4.0, -14.0, 1.9),
     (0.0, -7.0, -4.0, 1.9),
 ];
-const BASILAR: [Node; 4] =
-    [(0.0, -7.0, -5.0, 2.0), (1.0, -10.0, 4.0, 2.1), (0.5, -10.0, 14.0, 2.1), (0.0, -9.0, 21.0, 2.0)];
+const BASILAR: [Node; 4] = [(0.0, -7.0, -5.0, 2.0), (1.0, -10.0, 4.0, 2.1), (0.5, -10.0, 14.0, 2.1), (0.0, -9.0, 21.0, 2.0)];
 const MIDDLE_CEREBRAL: [Node; 4] =
     [(14.0, -24.0, 32.0, 2.1), (22.0, -26.0, 33.0, 1.9), (32.0, -27.0, 31.0, 1.8), (38.0, -24.0, 32.0, 1.6)];
 const SYLVIAN_UPPER: [Node; 6] = [
@@ -98,13 +97,8 @@ const SYLVIAN_UPPER: [Node; 6] = [
     (56.0, 0.0, 70.0, 1.2),
     (52.0, 6.0, 84.0, 1.0),
 ];
-const SYLVIAN_LOWER: [Node; 5] = [
-    (38.0, -24.0, 32.0, 1.5),
-    (42.0, -12.0, 34.0, 1.4),
-    (48.0, 2.0, 42.0, 1.3),
-    (56.0, 16.0, 48.0, 1.2),
-    (56.0, 32.0, 56.0, 1.0),
-];
+const SYLVIAN_LOWER: [Node; 5] =
+    [(38.0, -24.0, 32.0, 1.5), (42.0, -12.0, 34.0, 1.4), (48.0, 2.0, 42.0, 1.3), (56.0, 16.0, 48.0, 1.2), (56.0, 32.0, 56.0, 1.0)];
 const ANTERIOR_CEREBRAL: [Node; 8] = [
     (14.0, -24.0, 32.0, 1.8),
     (6.0, -32.0, 32.0, 1.6),
@@ -127,23 +121,23 @@ const POSTERIOR_CEREBRAL: [Node; 7] = [
 ];
 const POSTERIOR_COMMUNICATING: [Node; 3] = [(12.0, -26.0, 28.0, 1.2), (10.0, -18.0, 25.0, 1.1), (8.0, -9.0, 23.0, 1.2)];
 const SAGITTAL_SINUS: [Node; 9] = [
-    (0.0, -78.0, 62.0, 1.5),
-    (0.0, -64.0, 88.0, 2.2),
-    (0.0, -40.0, 107.0, 2.8),
-    (0.0, -8.0, 117.0, 3.2),
-    (0.0, 28.0, 114.0, 3.6),
-    (0.0, 58.0, 98.0, 4.0),
-    (0.0, 79.0, 70.0, 4.3),
-    (0.0, 83.0, 40.0, 4.5),
-    (0.0, 77.0, 17.0, 4.6),
+    (0.0, -76.0, 62.0, 2.0),
+    (0.0, -62.0, 87.0, 2.8),
+    (0.0, -40.0, 106.0, 3.6),
+    (0.0, -8.0, 117.0, 4.2),
+    (0.0, 28.0, 114.0, 4.8),
+    (0.0, 57.0, 98.0, 5.2),
+    (0.0, 76.0, 70.0, 5.5),
+    (0.0, 81.0, 40.0, 5.7),
+    (0.0, 74.0, 17.0, 5.8),
 ];
-const STRAIGHT_SINUS: [Node; 3] = [(0.0, 30.0, 46.0, 2.2), (0.0, 52.0, 32.0, 2.4), (0.0, 76.0, 17.0, 3.0)];
-const TRANSVERSE_SINUS: [Node; 7] = [
-    (0.0, 77.0, 17.0, 4.4),
-    (24.0, 70.0, 13.0, 4.2),
-    (44.0, 48.0, 11.0, 4.2),
-    (50.0, 28.0, 6.0, 4.2),
-    (42.0, 16.0, -10.0, 4.4),
-    (33.0, 4.0, -30.0, 5.0),
-    (34.0, -4.0, -160.0, 5.5),
+const STRAIGHT_SINUS: [Node; 3] = [(0.0, 30.0, 46.0, 2.2), (0.0, 52.0, 32.0, 2.4), (0.0, 74.0, 17.0, 3.0)];
+const TRANSVERSE_SINUS: [Node; 5] =
+    [(0.0, 74.0, 17.0, 5.6), (24.0, 66.0, 13.0, 5.4), (42.0, 46.0, 11.0, 5.4), (49.0, 30.0, 6.0, 5.2), (42.0, 18.0, -6.0, 5.0)];
+const JUGULAR: [Node; 5] = [
+    (44.0, 22.0, -2.0, 4.4),
+    (38.0, 10.0, -16.0, 4.6),
+    (33.0, 3.0, -32.0, 5.0),
+    (34.0, -5.0, -90.0, 5.4),
+    (33.0, -12.0, -160.0, 6.0),
 ];
