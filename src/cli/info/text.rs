@@ -1,7 +1,5 @@
 //! What `info` knows of a scan, for people.
 
-use std::fmt::Write;
-
 use pellucid::io::Scan;
 
 use super::super::histogram;
@@ -16,11 +14,15 @@ pub(super) fn of(report: &Report, scan: Option<&Scan>) -> String {
     if let (Some(volume), Some(scan)) = (&report.volume, scan) {
         rows.extend(volume_rows(volume));
         rows.push(("histogram".to_string(), format!("[{}]", histogram::line(&scan.volume, HISTOGRAM_BINS))));
-        rows.extend(scan.facts.iter().filter(|(label, _)| label != "dimensions").cloned());
+        // What the reader says in its own words, less what stands above in ours.
+        let said = |label: &String| rows.iter().any(|(said, _)| said == label);
+        let more: Vec<_> =
+            scan.facts.iter().filter(|(label, text)| !said(label) && !text.is_empty()).cloned().collect();
+        rows.extend(more);
     }
     let mut text = table(&rows);
     if !report.series.is_empty() {
-        let _ = writeln!(text, "{} series", report.series.len());
+        text.push_str("series:\n");
         report.series.iter().for_each(|series| text.push_str(&series_lines(series)));
     }
     text.push_str(&file_lines(&report.files));
@@ -71,9 +73,12 @@ fn direction(volume: &VolumeReport, axis: usize, name: &str) -> String {
 fn series_lines(series: &SeriesReport) -> String {
     let [columns, rows, slices] = series.dims;
     let number = series.number.map_or_else(|| "-".to_string(), |number| number.to_string());
+    let identity = [series.uid.as_str(), &series.transfer_syntax].into_iter().filter(|text| !text.is_empty());
     let mut lines = format!(
-        "  {number}  {} {columns} x {rows} x {slices}  {}\n     {}, {}\n",
-        series.modality, series.description, series.uid, series.transfer_syntax
+        "  {number}  {} {columns} x {rows} x {slices}  {}\n     {}\n",
+        series.modality,
+        series.description,
+        identity.collect::<Vec<_>>().join(", ")
     );
     if let Some(reason) = &series.refused {
         lines.push_str(&format!("     refused: {reason}\n"));
@@ -87,7 +92,7 @@ fn file_lines(files: &[FileReport]) -> String {
         return String::new();
     }
     let used = files.iter().filter(|file| file.used).count();
-    let mut lines = format!("{} files: {used} used, {} left out\n", files.len(), files.len() - used);
+    let mut lines = format!("files: {used} used, {} left out\n", files.len() - used);
     for file in files.iter().filter(|file| !file.used) {
         lines.push_str(&format!("  {}: {}\n", file.path, file.reason));
     }
@@ -119,7 +124,7 @@ mod tests {
     #[test]
     fn files_that_were_left_out_are_named_with_the_reason() {
         let file = |path: &str, used| FileReport { path: path.to_string(), used, reason: "why".to_string() };
-        assert_eq!(file_lines(&[file("a", true), file("b", false)]), "2 files: 1 used, 1 left out\n  b: why\n");
+        assert_eq!(file_lines(&[file("a", true), file("b", false)]), "files: 1 used, 1 left out\n  b: why\n");
         assert_eq!(file_lines(&[]), "");
     }
 }

@@ -38,14 +38,16 @@ pub(super) fn integer(object: &InMemDicomObject, tag: Tag) -> Result<Option<i64>
 
 /// Exactly `N` finite decimal numbers (DS, FD).
 pub(super) fn decimals<const N: usize>(object: &InMemDicomObject, tag: Tag) -> Result<Option<[f64; N]>, Malformed> {
-    let Some(element) = object.get(tag) else { return Ok(None) };
-    if text_is_blank(object, tag) {
+    if object.get(tag).is_none() || text_is_blank(object, tag) {
         return Ok(None);
     }
     let expected = if N == 1 { "a finite number".to_owned() } else { format!("{N} finite numbers") };
-    let numbers = element.to_multi_float64().map_err(|_| malformed(object, tag, &expected))?;
-    match <[f64; N]>::try_from(numbers) {
-        Ok(numbers) if numbers.iter().all(|number| number.is_finite()) => Ok(Some(numbers)),
+    let numbers = text(object, tag)
+        .map(|text| text.split('\\').map(|number| number.trim().parse::<f64>()).collect::<Result<Vec<_>, _>>());
+    match numbers {
+        Some(Ok(numbers)) if numbers.iter().all(|number| number.is_finite()) => {
+            numbers.try_into().map(Some).map_err(|_| malformed(object, tag, &expected))
+        }
         _ => Err(malformed(object, tag, &expected)),
     }
 }

@@ -112,7 +112,8 @@ fn compressed_frame(file: &ImageFile, object: &DefaultDicomObject, index: usize,
             .element(format!("frame {}", index + 1))
             .remedy("convert the series to Explicit VR Little Endian, or export it again")
     };
-    let encoded = object.frame_pixel_data(index as u32).filter(|bytes| !bytes.is_empty());
+    let is_encapsulated = object.number_of_fragments().is_some();
+    let encoded = object.frame_pixel_data(index as u32).filter(|bytes| is_encapsulated && !bytes.is_empty());
     let Some(encoded) = encoded else {
         return Err(fault(Fault::Input, "there is no compressed Pixel Data of this frame".to_owned()));
     };

@@ -58,6 +58,8 @@ mod assemble;
 mod attributes;
 mod choice;
 mod codestream;
+mod ct_image;
+mod decimal_string;
 mod folder;
 mod frame;
 mod functional_groups;
@@ -68,11 +70,14 @@ mod read;
 mod series;
 mod storage;
 mod transfer_syntax;
+mod uid;
+mod write;
 
 pub use choice::SeriesChoice;
 pub use folder::{Folder, scan_folder};
 pub use read::read;
 pub use series::{Series, Verdict};
+pub use write::{SeriesDescription, write_series};
 
 /// The innermost cause of a library's error, which is the part that says something about the file.
 fn deepest(error: &(dyn std::error::Error + 'static)) -> String {
