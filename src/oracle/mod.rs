@@ -62,9 +62,8 @@ impl<'a> Oracle<'a> {
             volume,
             scene,
             patches: Patches::new(&scene.transfer_function),
-            cubic: PanelRule::new(1.0),
-            // Extinction of degree 6 may turn often within a panel: at a depth of 1 the quadrature errs by up to 2e-12.
-            sextic: PanelRule::new(0.25),
+            cubic: PanelRule::new(),
+            sextic: PanelRule::new(),
             collocation: Collocation::new(),
         }
     }
