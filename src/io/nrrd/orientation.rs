@@ -73,7 +73,7 @@ fn oriented_lattice(header: &Header, axes: [&Axis; 3], warnings: &mut Vec<String
         *step = world(axis.direction.as_deref().unwrap_or_default(), "space directions")?;
         let length = step.length();
         if let Some(spacing) = axis.spacing
-            && !((spacing - length).abs() <= SPACING_TOLERANCE * length)
+            && (spacing - length).abs() > SPACING_TOLERANCE * length
         {
             return Err(Error::new(Fault::Geometry, "spacing and direction of an axis contradict each other")
                 .element("spacings")
