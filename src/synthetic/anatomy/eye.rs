@@ -1,19 +1,22 @@
 //! Orbits and eyes.
 
-use crate::synthetic::sdf::{Solid, ellipsoid, half_space, common, rod, sphere, tube};
-use crate::synthetic::tissue::{FAT, GREY, LENS, MUSCLE, SKIN, Tissue, VITREOUS};
+use crate::synthetic::scene::Tissue;
+use crate::synthetic::sdf::{Solid, common, ellipsoid, half_space, sphere, tube};
+use crate::synthetic::tissue::{FAT, GREY, LENS, MUSCLE, SKIN, VITREOUS};
 
 const GLOBE: (f32, f32, f32) = (31.5, -71.5, 15.0);
 
 /// The bony sockets: cones whose inner walls are parallel.
 pub(super) fn orbits() -> Solid {
-    rod(&[(33.0, -84.0, 16.5, 18.5), (29.0, -72.0, 16.0, 17.5), (13.0, -38.0, 14.0, 4.0)]).mirrored()
+    tube(&[(34.0, -90.0, 17.0, 18.5), (30.0, -74.0, 16.0, 17.5), (23.0, -57.0, 15.0, 11.5), (13.0, -36.0, 14.0, 3.4)])
+        .mirrored()
 }
 
 /// Orbital fat, muscles, nerve, globe and lens.
 pub(super) fn tissues() -> Vec<Tissue> {
     let fat = common(1.0, [orbits(), half_space((0.0, -72.0, 0.0), (0.0, -1.0, 0.0))]);
-    let nerve = tube(&[(30.0, -60.0, 15.0, 2.4), (24.0, -50.0, 14.0, 2.4), (13.0, -36.0, 15.0, 2.2), (4.0, -26.0, 24.0, 2.4)]);
+    let nerve =
+        tube(&[(30.0, -60.0, 15.0, 2.4), (24.0, -50.0, 14.0, 2.4), (13.0, -36.0, 15.0, 2.2), (4.0, -26.0, 24.0, 2.4)]);
     let recti = [
         tube(&[(14.0, -38.0, 14.0, 1.4), (18.0, -58.0, 15.0, 2.2), (20.5, -73.0, 15.0, 1.2)]),
         tube(&[(15.0, -38.0, 14.0, 1.4), (36.0, -58.0, 15.0, 2.2), (43.0, -72.0, 15.0, 1.2)]),

@@ -1,8 +1,9 @@
 //! The skull without the lower jaw.
 
 use super::eye;
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, blend, common, ellipsoid, half_space, rod, sphere, tube};
-use crate::synthetic::tissue::{CORTICAL, DIPLOE, Material, SUTURE, THIN_BONE, Tissue};
+use crate::synthetic::tissue::{CORTICAL, DIPLOE, Material, SUTURE, THIN_BONE};
 
 /// Thickness of the vault, mm.
 const VAULT_MM: f32 = 6.0;
@@ -81,7 +82,8 @@ fn face() -> Solid {
         (60.0, 2.0, 2.0, 5.0),
     ]);
     let maxilla = ellipsoid((22.0, -64.0, -14.0), (19.0, 21.0, 18.0));
-    let pillar = tube(&[(8.0, -87.0, 22.0, 4.0), (13.5, -86.0, 4.0, 4.5), (16.5, -85.0, -14.0, 4.5), (17.0, -84.0, -30.0, 5.0)]);
+    let pillar =
+        tube(&[(8.0, -87.0, 22.0, 4.0), (13.5, -86.0, 4.0, 4.5), (16.5, -85.0, -14.0, 4.5), (17.0, -84.0, -30.0, 5.0)]);
     let alveolar = tube(&[
         (0.0, -88.5, -32.0, 5.5),
         (14.0, -85.5, -32.0, 5.5),
@@ -131,10 +133,8 @@ fn sutures() -> Solid {
     let coronal = seam((0.0, -10.0, 124.0), (0.0, 0.94, -0.34));
     let between = [half_space((0.0, -10.0, 124.0), (0.0, -0.94, 0.34)), half_space((0.0, 76.0, 90.0), (0.0, 1.0, 0.0))];
     let sagittal = common(0.1, between.into_iter().chain([seam((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))]));
-    let lambdoid = common(
-        0.1,
-        [seam((0.0, 76.0, 90.0), (0.62, 0.66, -0.42)), half_space((0.0, 50.0, 0.0), (0.0, -1.0, 0.0))],
-    );
+    let lambdoid =
+        common(0.1, [seam((0.0, 76.0, 90.0), (0.62, 0.66, -0.42)), half_space((0.0, 50.0, 0.0), (0.0, -1.0, 0.0))]);
     outer_table(blend(0.1, [coronal, sagittal, lambdoid.mirrored()]))
 }
 
