@@ -15,10 +15,6 @@
 //! scanner noise.
 
 mod anatomy;
-<<<<<<< HEAD
-mod bounds;
-=======
->>>>>>> phantom
 mod noise;
 mod raster;
 mod scene;
@@ -86,21 +82,6 @@ pub fn head(phantom: &HeadPhantom) -> Result<Volume> {
             .found(noise_hu.to_string())
             .expected(format!("0 to {MAX_NOISE_HU} HU")));
     }
-<<<<<<< HEAD
-    let s = 240.0 / size as f64;
-    let nz = ((280.0 / (1.25 * s)).round() as usize).max(2);
-    let sp = DVec3::new(s, s, 280.0 / nz as f64);
-    let origin = DVec3::new(-120.0, -131.0, -142.0) + 0.5 * sp;
-    let grid = Grid::new([size, size, nz], DAffine3::from_mat3_translation(DMat3::from_diagonal(sp), origin))?;
-    let mut voxels = vec![0i16; grid.voxel_count()];
-    let scene = anatomy::head();
-    raster::rasterize(
-        &scene,
-        &grid,
-        raster::Noise { seed: phantom.seed, deviation_hu: phantom.noise_hu as f32 },
-        &mut voxels,
-    );
-=======
     let mut voxels = Vec::new();
     voxels.try_reserve_exact(grid.voxel_count()).map_err(|error| {
         Error::new(Fault::Limit, "there is no memory for the head phantom")
@@ -111,7 +92,6 @@ pub fn head(phantom: &HeadPhantom) -> Result<Volume> {
     voxels.resize(grid.voxel_count(), 0);
     let scene = anatomy::head(edge_mm(&grid));
     raster::rasterize(&scene, &grid, raster::Noise { seed, deviation_hu: noise_hu as f32 }, &mut voxels);
->>>>>>> phantom
     Volume::new(grid, Samples::I16(voxels), Rescale::IDENTITY, Quantity::Hu)
 }
 

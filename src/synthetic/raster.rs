@@ -43,41 +43,11 @@ struct Slab<'a> {
 /// Fills `voxels`, x fastest, on `grid`.
 pub(super) fn rasterize(scene: &Scene, grid: &Grid, noise: Noise, voxels: &mut [i16]) {
     let [nx, ny, _] = grid.dims();
-<<<<<<< HEAD
-    let map = grid.index_to_lps_mm();
-    let position =
-        |i: usize, j: usize, k: usize| map.transform_point3(glam::DVec3::new(i as f64, j as f64, k as f64)).as_vec3();
-    let spacing_mm = grid.spacing_mm().as_vec3();
-    // Half the width of the edges: about 1.2 voxels between 10 % and 90 %.
-    let ramp_mm = 1.25 * spacing_mm.element_sum() / 3.0;
-    voxels.par_chunks_mut(nx * ny * BLOCK).enumerate().for_each(|(slab, slices)| {
-        let k0 = slab * BLOCK;
-        let k1 = k0 + slices.len() / (nx * ny);
-        for j0 in (0..ny).step_by(BLOCK) {
-            for i0 in (0..nx).step_by(BLOCK) {
-                let (i1, j1) = ((i0 + BLOCK).min(nx), (j0 + BLOCK).min(ny));
-                let (first, last) = (position(i0, j0, k0), position(i1 - 1, j1 - 1, k1 - 1));
-                let part = BlockScene::new(scene, 0.5 * (first + last), 0.5 * (last - first).length(), ramp_mm);
-                for k in k0..k1 {
-                    for j in j0..j1 {
-                        for i in i0..i1 {
-                            let voxel = (k * ny + j) * nx + i;
-                            let noise_hu = noise.deviation_hu * bell(noise.seed, voxel as u64);
-                            let hu = part.hu(position(i, j, k)) + noise_hu;
-                            // CT numbers have 12 bits: -1024 to 3071.
-                            slices[((k - k0) * ny + j) * nx + i] = hu.round().clamp(-1024.0, 3071.0) as i16;
-                        }
-                    }
-                }
-            }
-        }
-=======
     voxels.par_chunks_mut(nx * ny * SLAB).enumerate().for_each(|(index, voxels)| {
         let first_slice = index * SLAB;
         let end = first_slice + voxels.len() / (nx * ny);
         let mut slab = Slab { grid, noise, first_slice, voxels };
         slab.paint(scene, Block { low: [0, 0, first_slice], high: [nx, ny, end] });
->>>>>>> phantom
     });
 }
 

@@ -1,13 +1,8 @@
 //! Orbits and eyes.
 
-<<<<<<< HEAD
-use crate::synthetic::sdf::{Solid, common, ellipsoid, half_space, rod, sphere, tube};
-use crate::synthetic::tissue::{FAT, GREY, LENS, MUSCLE, SKIN, Tissue, VITREOUS};
-=======
 use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, common, ellipsoid, half_space, sphere, tube};
 use crate::synthetic::tissue::{FAT, GREY, LENS, MUSCLE, SKIN, VITREOUS};
->>>>>>> phantom
 
 const GLOBE: (f32, f32, f32) = (31.5, -71.5, 15.0);
 

@@ -8,11 +8,7 @@ use crate::synthetic::tissue::{CORTICAL, DIPLOE};
 pub(super) fn tissues() -> Vec<Tissue> {
     let hyoid = tube(&[(0.0, -39.0, -97.0, 3.2), (12.0, -35.0, -97.0, 2.6), (22.0, -20.0, -93.0, 1.8)]).mirrored();
     vec![
-<<<<<<< HEAD
-        Tissue::new(CORTICAL, mandible()).core(1.9, DIPLOE).beneath_skin(2.6),
-=======
         Tissue::new(CORTICAL, mandible()).core(2.6, DIPLOE).beneath_skin(2.6),
->>>>>>> phantom
         Tissue::new(CORTICAL, hyoid).beneath_skin(3.0),
     ]
 }
