@@ -72,8 +72,6 @@ fn a_series_with_a_gap_is_6() {
         "render",
         &folder.pipeline(),
         "--set",
-        "volume.phantom=null",
-        "--set",
         &format!("volume.source={series}"),
     ]);
     run.failure(6).says(&["mm"]);
