@@ -74,25 +74,42 @@ def corner_distance(a, b):
     return np.abs(corners @ (a.affine - b.affine).T).max()
 
 
-def compare(name, scans):
-    """Prints a line; true if all of `scans` (a dict by reader) are the same."""
+def differences(scans):
+    """What differs between `scans` (a dict by reader) and the first of them, and how far apart their corners are in mm."""
     (first, reference), *others = scans.items()
-    faults = []
-    worst = 0.0
+    found, farthest = [], 0.0
     for reader, scan in others:
         if tuple(scan.dims) != tuple(reference.dims):
-            faults.append(f"dims {first} {reference.dims} {reader} {scan.dims}")
+            found.append(f"dims {first} {reference.dims} {reader} {scan.dims}")
             continue
         distance = corner_distance(reference, scan)
-        worst = max(worst, distance)
+        farthest = max(farthest, distance)
         if not distance <= AFFINE_TOLERANCE_MM:
-            faults.append(f"affine {reader} is {distance:.6f} mm off")
+            found.append(f"affine {reader} is {distance:.6f} mm off")
         if scan.sha256 != reference.sha256:
-            faults.append(f"values {first} {reference.sha256[:12]} {reader} {scan.sha256[:12]}")
-    dims = " x ".join(str(n) for n in reference.dims)
-    print(f"{'DIFFERS' if faults else 'same'}  {name}: {dims}, {', '.join(scans)}, corners within {worst:.2e} mm"
-          + "".join(f"; {fault}" for fault in faults))
-    return not faults
+            found.append(f"values {first} {reference.sha256[:12]} {reader} {scan.sha256[:12]}")
+    return found, farthest
+
+
+def compare(name, scans):
+    """Prints a line; true if all of `scans` are the same."""
+    found, farthest = differences(scans)
+    dims = " x ".join(str(n) for n in next(iter(scans.values())).dims)
+    print(f"{'DIFFERS' if found else 'same'}  {name}: {dims}, {', '.join(scans)}, corners within {farthest:.2e} mm"
+          + "".join(f"; {difference}" for difference in found))
+    return not found
+
+
+def check_the_check():
+    """A comparison that cannot fail is none: dims, affine and values must each be noticed."""
+    scan = Scan((2, 3, 4), np.eye(3, 4), sha256(np.zeros(24)))
+    mirrored = np.array([[-1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, 0]], dtype=float)  # The same box, left and right changed.
+    nan = np.full((3, 4), np.nan)
+    wrong = [scan._replace(dims=(3, 2, 4)), scan._replace(affine=mirrored), scan._replace(affine=nan),
+             scan._replace(sha256=sha256(np.ones(24)))]
+    assert not differences({"a": scan, "b": scan})[0], "equal scans differ"
+    for other in wrong:
+        assert differences({"a": scan, "b": other})[0], f"not noticed: {other}"
 
 
 def check_folder(binary, folder):
@@ -123,6 +140,7 @@ def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     binary, folders = sys.argv[1], sys.argv[2:]
+    check_the_check()
     same = [check(folder, check_folder, binary, folder) for folder in folders]
     same.append(check("phantom", check_phantom, binary))
     sys.exit(0 if all(same) else 1)

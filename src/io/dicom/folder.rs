@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
+use super::group::Group;
 use super::header::read_header;
-use super::series::{Group, Series, Slice};
+use super::series::{Series, Slice};
 use crate::error::{Error, Fault, Result};
 use crate::io::FileFate;
 

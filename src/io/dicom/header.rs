@@ -126,7 +126,7 @@ fn image_file(
         path: path.to_path_buf(),
         bytes,
         series_uid: text(object, tags::SERIES_INSTANCE_UID).unwrap_or_default(),
-        series_number: integer(object, tags::SERIES_NUMBER)?,
+        series_number: integer(object, tags::SERIES_NUMBER).unwrap_or(None),
         description: text(object, tags::SERIES_DESCRIPTION).unwrap_or_default(),
         modality,
         acquisition_number: integer(object, tags::ACQUISITION_NUMBER).unwrap_or(None),

@@ -166,7 +166,10 @@ fn whole_folder<T>(dir: &Path, write: impl FnOnce(&Path) -> Result<T>) -> Result
             .remedy("choose another folder: slices of two series must not mix"));
     }
     let part = temporary_name(dir);
-    fs::create_dir_all(&part).map_err(failed)?;
+    if let Some(parent) = part.parent() {
+        fs::create_dir_all(parent).map_err(failed)?;
+    }
+    fs::create_dir(&part).map_err(failed)?;
     let written = write(&part).and_then(|result| {
         if dir.exists() {
             fs::remove_dir(dir).map_err(failed)?; // Empty, as was seen above; anything else is an error here.
