@@ -1,6 +1,6 @@
 //! The exact integrator against the oracle: every pixel within the tolerance, and within the bound it reports.
 
-use crate::support::scenes::{two_lights, rough_volume, scene_around, thin_shell, two_colors};
+use crate::support::scenes::{rough_volume, scene_around, thin_shell, two_colors, two_lights};
 use pellucid::integrate::exact::{Precision, tracer};
 use pellucid::oracle::Oracle;
 use pellucid::scene::Scene;

@@ -19,9 +19,7 @@ impl Bounds {
 
     /// The smallest box around all of `boxes`.
     pub(super) fn hull(boxes: impl IntoIterator<Item = Bounds>) -> Self {
-        boxes
-            .into_iter()
-            .fold(Bounds::NOWHERE, |a, b| Bounds { low: a.low.min(b.low), high: a.high.max(b.high) })
+        boxes.into_iter().fold(Bounds::NOWHERE, |a, b| Bounds { low: a.low.min(b.low), high: a.high.max(b.high) })
     }
 
     pub(super) fn overlap(self, other: Bounds) -> Self {

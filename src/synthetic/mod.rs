@@ -1,11 +1,11 @@
 //! Volumes made by formula: the CT head phantom.
 
+mod anatomy;
 mod bounds;
 mod noise;
 mod raster;
 mod sdf;
 mod tissue;
-mod anatomy;
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -42,6 +42,11 @@ pub fn head(phantom: &HeadPhantom) -> Result<Volume> {
     let grid = Grid::new([size, size, nz], DAffine3::from_mat3_translation(DMat3::from_diagonal(sp), origin))?;
     let mut voxels = vec![0i16; grid.voxel_count()];
     let scene = anatomy::head();
-    raster::rasterize(&scene, &grid, raster::Noise { seed: phantom.seed, deviation_hu: phantom.noise_hu as f32 }, &mut voxels);
+    raster::rasterize(
+        &scene,
+        &grid,
+        raster::Noise { seed: phantom.seed, deviation_hu: phantom.noise_hu as f32 },
+        &mut voxels,
+    );
     Volume::new(grid, Samples::I16(voxels), Rescale::IDENTITY, Quantity::Hu)
 }

@@ -44,9 +44,8 @@ struct BlockScene<'a> {
 pub(super) fn rasterize(scene: &Scene, grid: &Grid, noise: Noise, voxels: &mut [i16]) {
     let [nx, ny, _] = grid.dims();
     let map = grid.index_to_lps_mm();
-    let position = |i: usize, j: usize, k: usize| {
-        map.transform_point3(glam::DVec3::new(i as f64, j as f64, k as f64)).as_vec3()
-    };
+    let position =
+        |i: usize, j: usize, k: usize| map.transform_point3(glam::DVec3::new(i as f64, j as f64, k as f64)).as_vec3();
     let spacing_mm = grid.spacing_mm().as_vec3();
     // Half the width of the edges: about 1.2 voxels between 10 % and 90 %.
     let ramp_mm = 1.25 * spacing_mm.element_sum() / 3.0;

@@ -21,18 +21,49 @@ pub(super) struct Solid {
 
 #[derive(Debug, Clone)]
 enum Form {
-    Ellipsoid { center: Vec3, radii: Vec3 },
-    Block { center: Vec3, half: Vec3, rounding_mm: f32 },
+    Ellipsoid {
+        center: Vec3,
+        radii: Vec3,
+    },
+    Block {
+        center: Vec3,
+        half: Vec3,
+        rounding_mm: f32,
+    },
     Tube(Vec<Segment>),
-    HalfSpace { point: Vec3, outward: Vec3 },
+    HalfSpace {
+        point: Vec3,
+        outward: Vec3,
+    },
     /// A solid in a frame of its own; columns of `axes` are the frame's unit vectors.
-    Placed { origin: Vec3, axes: Mat3, solid: Box<Solid> },
+    Placed {
+        origin: Vec3,
+        axes: Mat3,
+        solid: Box<Solid>,
+    },
     Mirrored(Box<Solid>),
-    Rippled { solid: Box<Solid>, height_mm: f32, length_mm: f32 },
-    Grown { solid: Box<Solid>, mm: f32 },
-    Blend { parts: Vec<Solid>, reach_mm: f32 },
-    Common { parts: Vec<Solid>, reach_mm: f32 },
-    Cut { solid: Box<Solid>, tool: Box<Solid>, reach_mm: f32 },
+    Rippled {
+        solid: Box<Solid>,
+        height_mm: f32,
+        length_mm: f32,
+    },
+    Grown {
+        solid: Box<Solid>,
+        mm: f32,
+    },
+    Blend {
+        parts: Vec<Solid>,
+        reach_mm: f32,
+    },
+    Common {
+        parts: Vec<Solid>,
+        reach_mm: f32,
+    },
+    Cut {
+        solid: Box<Solid>,
+        tool: Box<Solid>,
+        reach_mm: f32,
+    },
 }
 
 /// One piece of a tube: a cone with round ends, whose radius is linear along the axis.

@@ -187,5 +187,10 @@ pub(crate) fn scene_around(volume: &Volume, terms: Vec<Term>, shading: Option<Sh
     let eye = center - DVec3::new(0.72, 0.6, 0.36).normalize() * (4.0 * radius);
     let projection = Projection::Perspective { fov_degrees: 28.0 };
     let camera = Camera::look_at(eye, center, DVec3::Z, projection, size).expect("a valid camera");
-    Scene { transfer_function: TransferFunction::new([-1024.0, 3071.0], 1500.0, terms).expect("a valid transfer function"), shading, camera, background: Background::Transparent }
+    Scene {
+        transfer_function: TransferFunction::new([-1024.0, 3071.0], 1500.0, terms).expect("a valid transfer function"),
+        shading,
+        camera,
+        background: Background::Transparent,
+    }
 }

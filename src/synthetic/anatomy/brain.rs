@@ -11,7 +11,8 @@ pub(super) fn tissues() -> Vec<Tissue> {
     let tentorium = half_space((0.0, 40.0, 14.0), (0.0, 0.35, -1.0));
     let under_tentorium = half_space((0.0, 40.0, 11.0), (0.0, -0.35, 1.0));
     let cerebrum = common(3.0, [cavity.clone().grown(-2.2), tentorium]).cut(3.0, falx().grown(1.4));
-    let cerebellum = common(4.0, [cavity.clone().grown(-2.5), under_tentorium, ellipsoid((0.0, 44.0, -2.0), (48.0, 34.0, 26.0))]);
+    let cerebellum =
+        common(4.0, [cavity.clone().grown(-2.5), under_tentorium, ellipsoid((0.0, 44.0, -2.0), (48.0, 34.0, 26.0))]);
     vec![
         Tissue::new(DURA, cavity.clone().grown(1.5)),
         Tissue::new(CSF, cavity.grown(-0.6)),
@@ -23,19 +24,35 @@ pub(super) fn tissues() -> Vec<Tissue> {
         Tissue::new(DURA, falx()),
         Tissue::new(CSF, ventricles()),
         Tissue::new(GREY, blend(2.0, [ellipsoid((13.0, -6.0, 47.0), (4.0, 14.0, 5.0)).mirrored()])),
-        Tissue::new(CALCIFICATION, blend(1.0, [ellipsoid((0.0, 22.0, 36.0), (2.4, 3.0, 2.4)), ellipsoid((20.0, 34.0, 42.0), (1.8, 4.0, 2.0)).mirrored()])),
+        Tissue::new(
+            CALCIFICATION,
+            blend(
+                1.0,
+                [
+                    ellipsoid((0.0, 22.0, 36.0), (2.4, 3.0, 2.4)),
+                    ellipsoid((20.0, 34.0, 42.0), (1.8, 4.0, 2.0)).mirrored(),
+                ],
+            ),
+        ),
     ]
 }
 
 /// The fold of dura between the hemispheres.
 fn falx() -> Solid {
-    let sheet = common(0.5, [half_space((0.9, 0.0, 0.0), (1.0, 0.0, 0.0)), half_space((-0.9, 0.0, 0.0), (-1.0, 0.0, 0.0))]);
+    let sheet =
+        common(0.5, [half_space((0.9, 0.0, 0.0), (1.0, 0.0, 0.0)), half_space((-0.9, 0.0, 0.0), (-1.0, 0.0, 0.0))]);
     let free_edge = rod(&[(0.0, -44.0, 46.0, 20.0), (0.0, 2.0, 52.0, 20.0), (0.0, 36.0, 38.0, 18.0)]);
     common(0.5, [sheet, skull::cavity()]).cut(1.0, free_edge)
 }
 
 fn corpus_callosum() -> Solid {
-    tube(&[(0.0, -36.0, 42.0, 4.0), (0.0, -40.0, 54.0, 4.5), (0.0, -20.0, 63.0, 3.6), (0.0, 8.0, 64.0, 3.4), (0.0, 30.0, 56.0, 5.0)])
+    tube(&[
+        (0.0, -36.0, 42.0, 4.0),
+        (0.0, -40.0, 54.0, 4.5),
+        (0.0, -20.0, 63.0, 3.6),
+        (0.0, 8.0, 64.0, 3.4),
+        (0.0, 30.0, 56.0, 5.0),
+    ])
 }
 
 fn brain_stem() -> Solid {

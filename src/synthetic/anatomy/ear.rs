@@ -5,7 +5,8 @@ use crate::synthetic::sdf::{Solid, blend, ellipsoid, rod, sphere, tube};
 /// Both auricles: a plate that stands off the head, with the rim (helix), the inner fold (antihelix), the tragus in
 /// front of the canal and the lobule.
 pub(super) fn auricles() -> Solid {
-    let plate = ellipsoid((0.0, 0.0, 0.0), (16.0, 3.0, 28.0)).placed((82.0, 14.0, 4.0), (0.45, 0.89, 0.0), (0.12, 0.1, 1.0));
+    let plate =
+        ellipsoid((0.0, 0.0, 0.0), (16.0, 3.0, 28.0)).placed((82.0, 14.0, 4.0), (0.45, 0.89, 0.0), (0.12, 0.1, 1.0));
     let helix = tube(&[
         (77.0, 7.0, 2.0, 2.0),
         (79.0, -1.0, 12.0, 2.6),

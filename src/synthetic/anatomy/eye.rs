@@ -1,6 +1,6 @@
 //! Orbits and eyes.
 
-use crate::synthetic::sdf::{Solid, ellipsoid, half_space, common, rod, sphere, tube};
+use crate::synthetic::sdf::{Solid, common, ellipsoid, half_space, rod, sphere, tube};
 use crate::synthetic::tissue::{FAT, GREY, LENS, MUSCLE, SKIN, Tissue, VITREOUS};
 
 const GLOBE: (f32, f32, f32) = (31.5, -71.5, 15.0);
@@ -13,7 +13,8 @@ pub(super) fn orbits() -> Solid {
 /// Orbital fat, muscles, nerve, globe and lens.
 pub(super) fn tissues() -> Vec<Tissue> {
     let fat = common(1.0, [orbits(), half_space((0.0, -72.0, 0.0), (0.0, -1.0, 0.0))]);
-    let nerve = tube(&[(30.0, -60.0, 15.0, 2.4), (24.0, -50.0, 14.0, 2.4), (13.0, -36.0, 15.0, 2.2), (4.0, -26.0, 24.0, 2.4)]);
+    let nerve =
+        tube(&[(30.0, -60.0, 15.0, 2.4), (24.0, -50.0, 14.0, 2.4), (13.0, -36.0, 15.0, 2.2), (4.0, -26.0, 24.0, 2.4)]);
     let recti = [
         tube(&[(14.0, -38.0, 14.0, 1.4), (18.0, -58.0, 15.0, 2.2), (20.5, -73.0, 15.0, 1.2)]),
         tube(&[(15.0, -38.0, 14.0, 1.4), (36.0, -58.0, 15.0, 2.2), (43.0, -72.0, 15.0, 1.2)]),

@@ -6,7 +6,10 @@ use crate::synthetic::tissue::{CORTICAL, DIPLOE, Tissue};
 /// Mandible and hyoid.
 pub(super) fn tissues() -> Vec<Tissue> {
     let hyoid = tube(&[(0.0, -39.0, -97.0, 3.2), (12.0, -35.0, -97.0, 2.6), (22.0, -20.0, -93.0, 1.8)]).mirrored();
-    vec![Tissue::new(CORTICAL, mandible()).core(1.9, DIPLOE).beneath_skin(2.6), Tissue::new(CORTICAL, hyoid).beneath_skin(3.0)]
+    vec![
+        Tissue::new(CORTICAL, mandible()).core(1.9, DIPLOE).beneath_skin(2.6),
+        Tissue::new(CORTICAL, hyoid).beneath_skin(3.0),
+    ]
 }
 
 fn mandible() -> Solid {
@@ -31,7 +34,11 @@ fn mandible() -> Solid {
         (30.0, -52.0, -59.5, 5.6),
         (39.0, -36.0, -56.0, 5.0),
     ]);
-    let ramus = block((0.0, 0.0, 0.0), (3.6, 15.5, 21.0), 3.5).placed((48.0, -24.5, -42.0), (1.0, 0.12, 0.0), (0.06, 0.08, 1.0));
+    let ramus = block((0.0, 0.0, 0.0), (3.6, 15.5, 21.0), 3.5).placed(
+        (48.0, -24.5, -42.0),
+        (1.0, 0.12, 0.0),
+        (0.06, 0.08, 1.0),
+    );
     let coronoid = rod(&[(48.5, -34.0, -28.0, 3.8), (49.5, -37.5, -10.0, 2.4)]);
     let neck = rod(&[(50.0, -14.0, -30.0, 4.0), (50.5, -12.0, -10.0, 3.8)]);
     let angle = rod(&[(47.0, -22.0, -64.0, 4.6), (49.0, -14.0, -58.0, 4.4)]);

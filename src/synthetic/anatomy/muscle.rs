@@ -21,8 +21,15 @@ pub(super) fn tissues() -> Vec<Tissue> {
     let parotid = ellipsoid((59.0, 0.0, -36.0), (9.0, 13.0, 22.0)).mirrored();
     let submandibular = ellipsoid((33.0, -44.0, -82.0), (9.0, 14.0, 8.0)).mirrored();
     let thyroid = ellipsoid((17.0, -28.0, -136.0), (7.0, 8.0, 17.0)).mirrored();
-    let thyroid_cartilage = tube(&[(0.0, -42.0, -112.0, 2.4), (10.0, -34.0, -112.0, 3.0), (19.0, -18.0, -112.0, 2.4)]).mirrored();
-    let cricoid = tube(&[(0.0, -34.0, -130.0, 3.0), (11.0, -28.0, -129.0, 3.0), (9.0, -14.0, -126.0, 4.0), (0.0, -11.0, -126.0, 4.5)]).mirrored();
+    let thyroid_cartilage =
+        tube(&[(0.0, -42.0, -112.0, 2.4), (10.0, -34.0, -112.0, 3.0), (19.0, -18.0, -112.0, 2.4)]).mirrored();
+    let cricoid = tube(&[
+        (0.0, -34.0, -130.0, 3.0),
+        (11.0, -28.0, -129.0, 3.0),
+        (9.0, -14.0, -126.0, 4.0),
+        (0.0, -11.0, -126.0, 4.5),
+    ])
+    .mirrored();
     tissues.push(Tissue::new(GLAND, parotid).beneath_skin(4.0));
     tissues.push(Tissue::new(GLAND, submandibular).beneath_skin(4.0));
     tissues.push(Tissue::new(THYROID, thyroid).beneath_skin(5.0));
@@ -35,7 +42,8 @@ fn deep_face() -> Solid {
     let pterygoids = tube(&[(18.0, -38.0, -6.0, 9.0), (36.0, -26.0, -22.0, 9.0), (43.0, -20.0, -50.0, 7.0)]).mirrored();
     let pharynx = tube(&[(0.0, -24.0, -6.0, 15.0), (0.0, -20.0, -50.0, 16.0), (0.0, -22.0, -95.0, 17.0)]);
     let floor_of_mouth = ellipsoid((0.0, -58.0, -70.0), (26.0, 30.0, 10.0));
-    let buccinator = tube(&[(30.0, -82.0, -46.0, 4.0), (37.0, -62.0, -46.0, 4.0), (40.0, -46.0, -46.0, 4.0)]).mirrored();
+    let buccinator =
+        tube(&[(30.0, -82.0, -46.0, 4.0), (37.0, -62.0, -46.0, 4.0), (40.0, -46.0, -46.0, 4.0)]).mirrored();
     let mimic = ellipsoid((0.0, -80.0, -50.0), (26.0, 18.0, 34.0));
     blend(6.0, [pterygoids, pharynx, floor_of_mouth, buccinator, mimic])
 }
@@ -65,8 +73,14 @@ fn nuchal() -> Solid {
 }
 
 fn lips() -> Solid {
-    tube(&[(0.0, -97.0, -41.0, 5.0), (14.0, -93.0, -43.0, 5.0), (25.0, -86.0, -45.5, 4.0), (13.0, -92.0, -50.0, 5.0), (0.0, -95.0, -52.0, 5.0)])
-        .mirrored()
+    tube(&[
+        (0.0, -97.0, -41.0, 5.0),
+        (14.0, -93.0, -43.0, 5.0),
+        (25.0, -86.0, -45.5, 4.0),
+        (13.0, -92.0, -50.0, 5.0),
+        (0.0, -95.0, -52.0, 5.0),
+    ])
+    .mirrored()
 }
 
 fn tongue() -> Solid {

@@ -39,7 +39,13 @@ pub(super) fn tissues() -> Vec<Tissue> {
 
 /// C1, a ring.
 fn atlas() -> Solid {
-    let ring = tube(&[(0.0, -3.0, -38.0, 4.0), (13.0, 2.0, -38.0, 4.5), (19.0, 12.0, -38.0, 5.0), (15.0, 30.0, -38.0, 3.6), (0.0, 37.0, -38.0, 4.2)]);
+    let ring = tube(&[
+        (0.0, -3.0, -38.0, 4.0),
+        (13.0, 2.0, -38.0, 4.5),
+        (19.0, 12.0, -38.0, 5.0),
+        (15.0, 30.0, -38.0, 3.6),
+        (0.0, 37.0, -38.0, 4.2),
+    ]);
     let lateral_mass = ellipsoid((18.0, 9.0, -38.0), (7.0, 9.0, 6.5));
     let transverse = rod(&[(20.0, 11.0, -38.0, 4.0), (36.0, 12.0, -38.0, 3.6)]);
     blend(4.0, [ring, lateral_mass, transverse]).mirrored()
@@ -57,8 +63,12 @@ fn axis() -> Solid {
 
 /// C3 to C7.
 fn vertebra(level: usize, y: f32, z: f32) -> Solid {
-    let body = blend(3.0, [ellipsoid((0.0, y, z), (11.0, 8.5, 6.6)), ellipsoid((6.0, y + 1.0, z), (7.0, 7.0, 6.8)).mirrored()]);
-    let transverse = tube(&[(10.0, y + 1.0, z, 3.0), (19.0, y + 2.0, z - 1.0, 3.2), (26.0, y + 6.0, z - 2.0, 2.8)]).mirrored();
+    let body = blend(
+        3.0,
+        [ellipsoid((0.0, y, z), (11.0, 8.5, 6.6)), ellipsoid((6.0, y + 1.0, z), (7.0, 7.0, 6.8)).mirrored()],
+    );
+    let transverse =
+        tube(&[(10.0, y + 1.0, z, 3.0), (19.0, y + 2.0, z - 1.0, 3.2), (26.0, y + 6.0, z - 2.0, 2.8)]).mirrored();
     let articular = rod(&[(20.0, y + 13.0, z + 5.0, 5.2), (20.0, y + 15.0, z - 5.0, 5.2)]).mirrored();
     let length = 12.0 + 3.5 * level as f32;
     let spine = rod(&[(0.0, y + 29.0, z - 4.0, 3.4), (0.0, y + 30.0 + length, z - 10.0, 3.6)]);
