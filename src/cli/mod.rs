@@ -23,7 +23,7 @@ use pellucid::{Error, Fault, Result};
 
 /// CT volume rendering with a known error: a scan and a YAML pipeline in, a picture within a tolerance out.
 #[derive(Debug, Parser)]
-#[command(version, propagate_version = true, max_term_width = 100)]
+#[command(version, max_term_width = 100)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     global: Global,
@@ -88,12 +88,10 @@ impl PipelineArguments {
     }
 }
 
-/// How a result is printed.
+/// How a result is printed: for people or for programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// For people
     Text,
-    /// For programs
     Json,
 }
 
