@@ -72,8 +72,8 @@ pub fn compare(a: &Image, b: &Image, tolerance: f64) -> Result<Difference> {
             squares[c] += off[c] * off[c];
         }
         let difference = off.into_iter().fold(0.0, f64::max);
-        // Written so that a tolerance that is not a number counts every pixel.
-        pixels_over += usize::from(!(difference <= tolerance));
+        // A tolerance that is not a number counts every pixel.
+        pixels_over += usize::from(difference > tolerance || tolerance.is_nan());
         if difference > worst.map_or(0.0, |w| w.difference) {
             let (column, row) = (index % a.width(), index / a.width());
             worst = Some(WorstPixel { column, row, difference, values: [p, q] });

@@ -21,8 +21,10 @@ pub enum Depth {
 
 /// Deflate makes at most 1032 bytes of one, so a smaller file cannot hold more.
 const MOST_BYTES_FROM_ONE: u64 = 1032;
-/// Gamma of a file that is close enough to sRGB's: its own substitute, 1/2.2, as files write it.
-const SRGB_GAMMA: f32 = 0.454_55;
+/// What stands for sRGB in the gamma chunk, 1/2.2 in units of 1e-5 (PNG 11.3.2.5).
+const SRGB_GAMMA: u32 = 45_455;
+/// How far a gamma may be from it.
+const GAMMA_TOLERANCE: u32 = 1000;
 
 /// Writes a picture: RGB if it is opaque, RGBA if not, with texts by keyword.
 ///
@@ -42,7 +44,7 @@ pub fn write(path: &Path, image: &Image, depth: Depth, texts: &[(String, String)
         });
         encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
         // For programs that do not know the sRGB chunk.
-        encoder.set_source_gamma(png::ScaledFloat::new(SRGB_GAMMA));
+        encoder.set_source_gamma(png::ScaledFloat::from_scaled(SRGB_GAMMA));
         for (keyword, text) in texts {
             if text.chars().all(|c| u32::from(c) < 256) {
                 encoder.add_text_chunk(keyword.clone(), text.clone())?;
@@ -82,18 +84,20 @@ pub fn read(path: &Path) -> Result<Picture> {
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(damaged)?;
 
-    if reader.info().srgb.is_none()
-        && let Some(gamma) = reader.info().source_gamma
-        && (gamma.into_value() - SRGB_GAMMA).abs() > 0.01
+    // Where an sRGB chunk is given, this is its substitute.
+    let gamma = reader.info().gamma();
+    if let Some(gamma) = gamma
+        && gamma.into_scaled().abs_diff(SRGB_GAMMA) > GAMMA_TOLERANCE
     {
         return Err(Error::new(Fault::Unsupported, "the picture is not in sRGB")
             .at(path)
             .element("gAMA")
-            .found(gamma.into_value().to_string()));
+            .found(gamma.into_value().to_string())
+            .expected("0.45455, or an sRGB chunk"));
     }
-    let bytes = reader.output_buffer_size().filter(|&n| n as u64 <= length.saturating_mul(8 * MOST_BYTES_FROM_ONE));
-    // Expansion makes up to eight bytes of one: palettes of one bit become RGB, and transparency adds alpha.
-    let bytes = bytes.ok_or_else(|| {
+    // Expansion makes up to 32 bytes of one: each bit of a palette's index becomes RGB and alpha.
+    let most = length.saturating_mul(32 * MOST_BYTES_FROM_ONE);
+    let bytes = reader.output_buffer_size().filter(|&n| n as u64 <= most).ok_or_else(|| {
         Error::new(Fault::Input, "the file is too short for its picture").at(path).found(format!("{length} bytes"))
     })?;
     let mut samples = vec![0; bytes];

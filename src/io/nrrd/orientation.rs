@@ -29,7 +29,9 @@ pub(super) fn grid(header: &Header, warnings: &mut Vec<String>) -> Result<Grid> 
     };
     let signs = signs_to_lps(header.space, warnings);
     let steps = DMat3::from_diagonal(signs) * steps;
-    Grid::new(axes.map(|axis| axis.size), DAffine3::from_mat3_translation(steps, signs * origin))
+    // Adding 0 makes one zero of the two.
+    let origin = signs * origin + DVec3::ZERO;
+    Grid::new(axes.map(|axis| axis.size), DAffine3::from_mat3_translation(steps, origin))
 }
 
 /// The three axes that extend in space. Others may only be there with one sample.
@@ -71,7 +73,7 @@ fn oriented_lattice(header: &Header, axes: [&Axis; 3], warnings: &mut Vec<String
         *step = world(axis.direction.as_deref().unwrap_or_default(), "space directions")?;
         let length = step.length();
         if let Some(spacing) = axis.spacing
-            && !((spacing - length).abs() <= SPACING_TOLERANCE * length)
+            && (spacing - length).abs() > SPACING_TOLERANCE * length
         {
             return Err(Error::new(Fault::Geometry, "spacing and direction of an axis contradict each other")
                 .element("spacings")

@@ -214,7 +214,7 @@ fn next_word(source: &mut impl BufRead, word: &mut String) -> io::Result<bool> {
         }
         let skipped = if word.is_empty() { buffer.iter().take_while(|b| separates(b)).count() } else { 0 };
         let rest = &buffer[skipped..];
-        let length = rest.iter().position(|b| separates(b)).unwrap_or(rest.len());
+        let length = rest.iter().position(separates).unwrap_or(rest.len());
         let text = std::str::from_utf8(&rest[..length]).ok().filter(|text| text.is_ascii());
         let fits = word.len() + length <= MAX_WORD_BYTES;
         let Some(text) = text.filter(|_| fits) else {
