@@ -106,6 +106,21 @@ fn series_are_chosen_by_uid_number_or_description() {
 }
 
 #[test]
+fn damaged_images_are_warned_of_and_named() {
+    let folder = folder_of(SliceFile::stack(3));
+    let whole = std::fs::read(folder.path().join("s02.dcm")).unwrap();
+    std::fs::write(folder.path().join("t.dcm"), &whole[..500]).unwrap();
+    SliceFile::axial(3).without(tags::BITS_STORED).write(folder.path().join("u.dcm"));
+    let scan = folder.read().unwrap();
+    assert_eq!(scan.warnings, ["2 files may be images but could not be read; see the list of files"]);
+    let cases = [("t.dcm", "the header cannot be read"), ("u.dcm", "BitsStored (0028,0101) is missing")];
+    for (name, reason) in cases {
+        let found = fate(&scan.files, name);
+        assert!(!found.used && found.reason.contains(reason), "{name}: found '{}', expected '{reason}'", found.reason);
+    }
+}
+
+#[test]
 fn equally_large_series_must_be_chosen_by_name() {
     let mut slices = SliceFile::stack(2);
     slices.extend(SliceFile::stack(2).into_iter().map(|s| s.text(tags::SERIES_INSTANCE_UID, VR::UI, "1.2.77")));

@@ -4,10 +4,11 @@
 //! is the volume and a slice per thread.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::frame::{Decoded, decode_frames};
+use super::frame::{Decoded, FrameSlots, decode_frames};
 use super::series::{Series, Slice};
 use super::storage::{Plane, lowest_value, store};
 use super::transfer_syntax;
@@ -104,18 +105,18 @@ fn zeroed(series: &Series, len: usize) -> Result<Vec<i16>> {
 
 /// Decodes every slice into its part of the volume, one task per file.
 fn decode_all<'a>(slices: &[Slice], parts: impl Iterator<Item = &'a mut [i16]>) -> Result<Vec<Decoded>> {
-    let mut by_file: BTreeMap<_, Vec<(usize, (usize, &mut [i16]))>> = BTreeMap::new();
+    let mut by_file: BTreeMap<&Path, (Vec<usize>, Vec<FrameSlots>)> = BTreeMap::new();
     for (k, (slice, part)) in slices.iter().zip(parts).enumerate() {
-        by_file.entry(slice.path()).or_default().push((k, (slice.frame_index(), part)));
+        let (places, frames) = by_file.entry(slice.path()).or_default();
+        places.push(k);
+        frames.push((slice.frame_index(), part));
     }
-    let done: Vec<Result<Vec<(usize, Decoded)>>> = by_file
-        .into_values()
-        .collect::<Vec<_>>()
+    let files: Vec<_> = by_file.into_values().collect();
+    let done: Vec<Result<Vec<(usize, Decoded)>>> = files
         .into_par_iter()
-        .map(|places| {
-            let (places, frames): (Vec<usize>, Vec<_>) = places.into_iter().unzip();
-            let file = slices[places[0]].file();
-            Ok(places.into_iter().zip(decode_frames(file, frames)?).collect())
+        .map(|(places, frames)| {
+            let decoded = decode_frames(slices[places[0]].file(), frames)?;
+            Ok(places.into_iter().zip(decoded).collect())
         })
         .collect();
     let mut decoded = vec![Decoded::default(); slices.len()];

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::group::Group;
-use super::header::read_header;
+use super::header::{Rejected, read_header};
 use super::series::{Series, Slice};
 use crate::error::{Error, Fault, Result};
 use crate::io::FileFate;
@@ -22,6 +22,8 @@ pub struct Folder {
     pub series: Vec<Series>,
     /// Files that hold no image, with the reason.
     pub others: Vec<FileFate>,
+    /// How many of the others may be images, but are damaged or lack what an image must have.
+    pub damaged: usize,
 }
 
 /// Reads the headers of all files below a folder, or of one file, and sorts their images into series.
@@ -34,10 +36,14 @@ pub fn scan_folder(path: &Path) -> Result<Folder> {
     let headers: Vec<_> = paths.par_iter().map(|path| read_header(path)).collect();
     let mut slices = Vec::new();
     let mut others = Vec::new();
+    let mut damaged = 0;
     for (path, header) in paths.into_iter().zip(headers) {
         match header {
             Ok(file) => slices.extend(Slice::all_of(file)),
-            Err(reason) => others.push(FileFate { path, used: false, reason }),
+            Err(Rejected { reason, is_damaged }) => {
+                damaged += usize::from(is_damaged);
+                others.push(FileFate { path, used: false, reason });
+            }
         }
     }
     let mut series: Vec<Series> = Group::gather(slices).into_par_iter().map(Series::of).collect();
@@ -46,7 +52,7 @@ pub fn scan_folder(path: &Path) -> Result<Folder> {
         b.dims[2].cmp(&a.dims[2]).then_with(|| a.number.cmp(&b.number)).then_with(|| a.uid.cmp(&b.uid))
     });
     tracing::debug!(path = %path.display(), series = series.len(), others = others.len(), "folder scanned");
-    Ok(Folder { path: path.to_path_buf(), series, others })
+    Ok(Folder { path: path.to_path_buf(), series, others, damaged })
 }
 
 /// Appends the files below `path`, in the order of their names.

@@ -16,6 +16,9 @@ use super::pixels::StoredBits;
 use super::transfer_syntax;
 use crate::error::{Error, Fault, Result};
 
+/// The index of a frame in its file, and the part of the volume that it fills.
+pub(super) type FrameSlots<'a> = (usize, &'a mut [i16]);
+
 /// What was decoded into one frame's slots.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Decoded {
@@ -34,7 +37,7 @@ pub(super) struct Decoded {
 /// # Errors
 /// `Fault::Input` for pixel data that is missing, of the wrong length, or damaged; `Fault::Unsupported` for coding that
 /// this build would get wrong.
-pub(super) fn decode_frames(file: &ImageFile, frames: Vec<(usize, &mut [i16])>) -> Result<Vec<Decoded>> {
+pub(super) fn decode_frames(file: &ImageFile, frames: Vec<FrameSlots>) -> Result<Vec<Decoded>> {
     let object = OpenFileOptions::new().read_to(tags::PIXEL_DATA).open_file(&file.path).map_err(|error| {
         Error::new(Fault::Input, "the pixels cannot be read")
             .at(&file.path)

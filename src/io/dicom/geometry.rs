@@ -5,7 +5,7 @@
 //! scans, and sheared against it under gantry tilt, which an affine map holds without resampling. Then every slice must lie
 //! where the lattice puts it.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3};
 
 use super::header::Pose;
 use super::series::Slice;

@@ -75,35 +75,44 @@ const COSINE_TOLERANCE: f64 = 1e-3;
 /// Frames whose headers are read from one file; the standard's largest CT objects have a few thousand.
 const MAX_FRAMES: usize = 100_000;
 
-/// Reads the header of an image file; the error is the clause that says why the file is not one.
-pub(super) fn read_header(path: &Path) -> Result<ImageFile, String> {
-    let bytes = std::fs::metadata(path).map_err(|error| format!("cannot be read: {error}"))?.len();
-    if !has_dicom_prefix(path)? {
-        return Err("not a DICOM file (no 'DICM' at byte 128)".to_owned());
+/// Why a file is not taken for an image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Rejected {
+    /// One clause.
+    pub(super) reason: String,
+    /// True if it may be an image that was damaged, false if it is something else.
+    pub(super) is_damaged: bool,
+}
+
+/// Reads the header of an image file.
+pub(super) fn read_header(path: &Path) -> Result<ImageFile, Rejected> {
+    let damaged = |reason: String| Rejected { reason, is_damaged: true };
+    let other = |reason: &str| Rejected { reason: reason.to_owned(), is_damaged: false };
+    let unreadable = |error: std::io::Error| damaged(format!("cannot be read: {error}"));
+    let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
+    if !has_dicom_prefix(path).map_err(unreadable)? {
+        return Err(other("not a DICOM file (no 'DICM' at byte 128)"));
     }
     let object = OpenFileOptions::new()
         .read_until(tags::PIXEL_DATA)
         .open_file(path)
-        .map_err(|error| format!("the header cannot be read: {}", super::deepest(&error)))?;
+        .map_err(|error| damaged(format!("the header cannot be read: {}", super::deepest(&error))))?;
     let class = object.meta().media_storage_sop_class_uid().trim_end_matches('\0');
     if class == uids::MEDIA_STORAGE_DIRECTORY_STORAGE {
-        return Err("a DICOMDIR: an index of files, not an image".to_owned());
+        return Err(other("a DICOMDIR: an index of files, not an image"));
     }
     let transfer_syntax_uid = object.meta().transfer_syntax().to_owned();
     let modality = text(&object, tags::MODALITY).unwrap_or_default();
     if object.get(tags::ROWS).is_none() {
-        return Err(format!("not an image (modality '{modality}')"));
+        return Err(other(&format!("not an image (modality '{modality}')")));
     }
-    image_file(&object, path, bytes, transfer_syntax_uid, modality).map_err(|Malformed(reason)| reason)
+    image_file(&object, path, bytes, transfer_syntax_uid, modality).map_err(|Malformed(reason)| damaged(reason))
 }
 
-fn has_dicom_prefix(path: &Path) -> Result<bool, String> {
-    let mut start = [0; 132];
-    let file = File::open(path).map_err(|error| format!("cannot be read: {error}"))?;
-    let mut taken = Vec::with_capacity(start.len());
-    file.take(132).read_to_end(&mut taken).map_err(|error| format!("cannot be read: {error}"))?;
-    start[..taken.len()].copy_from_slice(&taken);
-    Ok(&start[128..] == b"DICM")
+fn has_dicom_prefix(path: &Path) -> std::io::Result<bool> {
+    let mut start = Vec::with_capacity(132);
+    File::open(path)?.take(132).read_to_end(&mut start)?;
+    Ok(start.get(128..) == Some(b"DICM"))
 }
 
 fn image_file(

@@ -74,9 +74,8 @@ fn folder_warnings(folder: &Folder, chosen: &Series) -> Vec<String> {
         .filter(|series| series.uid == chosen.uid && !std::ptr::eq(*series, chosen) && !series.is_localizer())
         .map(|series| format!("{} images of the same series have another geometry and are left out", series.dims[2]))
         .collect();
-    let damaged = folder.others.iter().filter(|fate| fate.reason.starts_with("the header")).count();
-    if damaged > 0 {
-        warnings.push(format!("{damaged} DICOM files could not be read; see the list of files"));
+    if folder.damaged > 0 {
+        warnings.push(format!("{} files may be images but could not be read; see the list of files", folder.damaged));
     }
     warnings
 }
