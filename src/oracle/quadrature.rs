@@ -77,9 +77,9 @@ mod tests {
         let rule = Gauss::<5>::new();
         let running = rule.running();
         for power in 0..5 {
-            for i in 0..5 {
-                let found: f64 = (0..5).map(|j| running[i][j] * rule.nodes[j].powi(power)).sum();
-                let expected = rule.nodes[i].powi(power + 1) / f64::from(power + 1);
+            for (end, row) in rule.nodes.iter().zip(&running) {
+                let found: f64 = row.iter().zip(rule.nodes).map(|(a, x)| a * x.powi(power)).sum();
+                let expected = end.powi(power + 1) / f64::from(power + 1);
                 assert!((found - expected).abs() < 1e-15, "power {power}: found {found}, expected {expected}");
             }
         }

@@ -13,6 +13,8 @@ use crate::scene::Shading;
 pub(super) struct ShadedRay<'a> {
     shading: &'a Shading,
     direction: DVec3,
+    /// Cosine of the angle by which the normal may turn within a step of the quadrature.
+    smallest_cosine: f64,
     /// The vectors whose product with the normal is bent at zero: towards each light, and halfway from it to the eye.
     bends: Vec<DVec3>,
 }
@@ -27,7 +29,9 @@ impl<'a> ShadedRay<'a> {
                 bends.push(half);
             }
         }
-        ShadedRay { shading, direction, bends }
+        // A highlight falls to a seventh of its top at 2/√shininess, too wide to lie unseen between five nodes.
+        let widest_turn = (2.0 / shading.shininess.sqrt()).min(1.0);
+        ShadedRay { shading, direction, smallest_cosine: widest_turn.cos(), bends }
     }
 
     /// Adds the cuts where shading is bent, and those where the gradient is small and its direction turns quickly.
@@ -42,6 +46,14 @@ impl<'a> ShadedRay<'a> {
         let squares = gradient.map(|g| g.times(&g));
         let square: [f64; 7] = std::array::from_fn(|i| squares[0].0[i] + squares[1].0[i] + squares[2].0[i]);
         splits.add(critical_points(&square).as_slice());
+    }
+
+    /// True if shading changes gently between two points that are not separated by a cut. Where the gradient nearly
+    /// vanishes its direction turns, and the fade changes, within a length proportional to its magnitude, however short
+    /// that is; between cuts the magnitude is monotone, so its values at the ends tell.
+    pub(super) fn is_gentle_between(&self, a: DVec3, b: DVec3) -> bool {
+        let (aa, bb) = (a.length_squared(), b.length_squared());
+        aa.max(bb) <= 4.0 * aa.min(bb) && a.dot(b) >= self.smallest_cosine * (aa * bb).sqrt()
     }
 
     /// Extinction and shaded emission from σ and q at a point with this gradient.

@@ -349,9 +349,12 @@ ANISOTROPIC = ([[0.3, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, 5.0]], [-120.0, 35.
 SHEARED = ([[0.75, 0.1, 0.0], [-0.2, 0.9, 0.3], [0.0, 0.7, 2.5]], [10.0, -20.0, 30.0])
 LEFT_HANDED = ([[0.0, 1.25, 0.0], [1.5, 0.0, 0.0], [0.1, 0.0, 2.0]], [-3.0, 4.0, 250.0])
 DOME = [1000 - 90 * (i - 1) ** 2 - 120 * (j - 1) ** 2 - 150 * (k - 1) ** 2 for k in range(3) for j in range(3) for i in range(3)]
+SADDLE = [890 + 200 * i * j - 300 * i - 260 * j for k in range(2) for j in range(4) for i in range(4)]
 SHADING = {
     "headlight": {"ambient": 0.125, "diffuse": 0.75, "specular": 0.25, "shininess": 20.0, "two_sided": True,
                   "soft_gradient": 0.0, "lights": [{"towards": None, "color": [1.0, 1.0, 1.0]}]},
+    "glint": {"ambient": 0.125, "diffuse": 0.0, "specular": 1.0, "shininess": 20.0, "two_sided": True,
+              "soft_gradient": 0.0, "lights": [{"towards": None, "color": [1.0, 1.0, 1.0]}]},
     "one-sided lamp": {"ambient": 0.25, "diffuse": 0.5, "specular": 0.5, "shininess": 8.5, "two_sided": False,
                        "soft_gradient": 60.0,
                        "lights": [{"towards": unit([1.0, -2.0, 2.5]), "color": [1.0, 0.875, 0.75]}]},
@@ -413,6 +416,9 @@ def cases():
     # Along the diagonal the value is a parabola with its top exactly at a step (600).
     yield case("a parabola touching a step", [2, 2, 2], ISOTROPIC, "steps", [-0.5, -0.5, 0.25], [1.5, 1.5, 0.25],
                stored=[0, 1200, 1200, 0] * 2)
+    # Where the saddle's gradient turns, it faces the eye for 1e-4 of a cell: a highlight that sampling would never meet.
+    yield case("a glint beside a saddle", [4, 4, 2], ISOTROPIC, "ramp",
+               [-1.0, 1.5 + 2.0 ** -13, 0.5], [4.0, 1.5 + 2.0 ** -13, 0.5], stored=SADDLE, shading="glint")
     for shading in SHADING:
         for function in ("ramp", "two tissues", "edges and bulk"):
             yield case("one cell", [2, 2, 2], SHEARED, function, *skew, back=1.0, shading=shading)
