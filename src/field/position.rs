@@ -80,7 +80,8 @@ impl Position {
             steps = steps.min(distance as f32 * pace.steps_per_unit[a]);
         }
         // The n-th step is inside if n < distance / step; the product above exceeds that by less than 3e-7 of itself.
-        (steps * (1.0 - 1e-6)) as usize + 1
+        // Through u32, which saturates where there is no step at all.
+        (steps * (1.0 - 1e-6)) as u32 as usize + 1
     }
 }
 
