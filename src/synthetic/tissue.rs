@@ -3,7 +3,6 @@
 use glam::Vec3;
 
 use super::noise::value_noise;
-use super::sdf::Solid;
 
 /// What fills a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +46,15 @@ pub(super) const FILLING: Material = Material::Uniform(3000.0);
 pub(super) const DIPLOE: Material = Material::Spongy { mean_hu: 420.0, swing_hu: 160.0, grain_mm: 2.6 };
 pub(super) const VERTEBRAL_SPONGE: Material = Material::Spongy { mean_hu: 320.0, swing_hu: 110.0, grain_mm: 2.4 };
 
+/// Depth of the brain's furrows in units of the distance between them.
+const FURROW_DEPTH_FOLDS: f32 = 1.3;
+
 impl Material {
+    /// The depth, mm, beyond which the value no longer depends on it.
+    pub(super) fn varies_to_mm(self) -> f32 {
+        if let Material::Folded { fold_mm } = self { FURROW_DEPTH_FOLDS * fold_mm } else { 0.0 }
+    }
+
     /// Value at `p`, `depth_mm` beneath the surface of the solid that it fills.
     pub(super) fn hu(self, p: Vec3, depth_mm: f32) -> f32 {
         match self {
@@ -62,10 +69,10 @@ impl Material {
     }
 }
 
-/// Brain: furrows are where a warped noise crosses 0; they are `fold_mm` deep, filled with CSF and lined with grey
+/// Brain: furrows are where a warped noise crosses 0; they are a little deeper than they are apart, filled with CSF and lined with grey
 /// matter, as the surface between them is.
 fn folded_hu(p: Vec3, depth_mm: f32, fold_mm: f32) -> f32 {
-    let open = 1.0 - smooth_step(0.7, 1.1, depth_mm / fold_mm);
+    let open = 1.0 - smooth_step(0.7, FURROW_DEPTH_FOLDS, depth_mm / fold_mm);
     let from_furrow_mm = if open > 0.0 { distance_from_furrow_mm(p, fold_mm) } else { fold_mm };
     let grey_mm = 0.25 * fold_mm;
     let lining = (1.0 - smooth_step(0.7 * grey_mm, 1.3 * grey_mm, from_furrow_mm)) * open;
@@ -87,35 +94,6 @@ fn distance_from_furrow_mm(p: Vec3, fold_mm: f32) -> f32 {
     let here = field(q);
     let slope = Vec3::new(field(q + STEP * Vec3::X), field(q + STEP * Vec3::Y), field(q + STEP * Vec3::Z)) - here;
     here.abs() / (slope.length() / STEP + 0.2) * 1.25 * fold_mm
-}
-
-/// A solid and what it is made of, painted over everything that comes before it in the scene.
-#[derive(Debug, Clone)]
-pub(super) struct Tissue {
-    /// Where it is.
-    pub(super) solid: Solid,
-    /// Depth beneath the solid's surface (mm) from which a material holds; the outermost first.
-    pub(super) coats: Vec<(f32, Material)>,
-    /// How deep beneath the skin the solid is cut off, mm.
-    pub(super) beneath_skin_mm: Option<f32>,
-}
-
-impl Tissue {
-    pub(super) fn new(material: Material, solid: Solid) -> Self {
-        Tissue { solid, coats: vec![(0.0, material)], beneath_skin_mm: None }
-    }
-
-    /// With another material from `depth_mm` inwards.
-    pub(super) fn core(mut self, depth_mm: f32, material: Material) -> Self {
-        self.coats.push((depth_mm, material));
-        self
-    }
-
-    /// Cut off where it would come closer than `mm` to the surface of the skin.
-    pub(super) fn beneath_skin(mut self, mm: f32) -> Self {
-        self.beneath_skin_mm = Some(mm);
-        self
-    }
 }
 
 /// 0 up to `low`, 1 from `high`, and Hermite's cubic between.

@@ -1,8 +1,9 @@
 //! Air: nose, sinuses, mouth, throat and windpipe.
 
 use super::eye;
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, blend, ellipsoid, rod, tube};
-use crate::synthetic::tissue::{AIR, MUSCLE, Material, THIN_BONE, Tissue};
+use crate::synthetic::tissue::{AIR, MUSCLE, Material, THIN_BONE};
 
 /// Air spaces, then what stands in them.
 pub(super) fn tissues() -> Vec<Tissue> {
@@ -85,7 +86,7 @@ fn ethmoid() -> Solid {
 fn sinuses() -> Solid {
     let maxillary = ellipsoid((27.0, -63.0, -11.0), (12.0, 15.5, 13.0)).mirrored();
     let sphenoid =
-        blend(2.0, [ellipsoid((5.5, -33.0, 9.0), (6.0, 10.0, 8.0)), ellipsoid((-5.0, -34.0, 8.0), (5.0, 9.0, 6.5))]);
+        blend(2.0, [ellipsoid((5.0, -33.0, 9.0), (7.0, 11.0, 9.0)), ellipsoid((-6.0, -34.0, 8.0), (5.0, 10.0, 7.5))]);
     let frontal_left =
         blend(4.0, [ellipsoid((10.0, -83.5, 39.0), (9.0, 3.0, 9.0)), ellipsoid((19.0, -81.5, 41.0), (8.0, 2.6, 6.0))]);
     let frontal_right = ellipsoid((-9.0, -83.5, 37.5), (7.0, 2.8, 7.0));

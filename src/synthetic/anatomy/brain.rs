@@ -1,7 +1,8 @@
 //! Brain, its fluid spaces and membranes.
 
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, blend, common, ellipsoid, half_space, rod, tube};
-use crate::synthetic::tissue::{CALCIFICATION, CSF, DURA, GREY, Material, Tissue, WHITE};
+use crate::synthetic::tissue::{CALCIFICATION, CSF, DURA, GREY, Material, WHITE};
 
 use super::skull;
 
@@ -16,7 +17,7 @@ pub(super) fn tissues() -> Vec<Tissue> {
     vec![
         Tissue::new(DURA, cavity.clone().grown(1.5)),
         Tissue::new(CSF, cavity.grown(-0.6)),
-        Tissue::new(Material::Folded { fold_mm: 15.0 }, cerebrum),
+        Tissue::new(Material::Folded { fold_mm: 12.0 }, cerebrum),
         Tissue::new(Material::Folded { fold_mm: 5.5 }, cerebellum),
         Tissue::new(WHITE, corpus_callosum()),
         Tissue::new(WHITE, brain_stem()),

@@ -1,13 +1,15 @@
 //! Orbits and eyes.
 
-use crate::synthetic::sdf::{Solid, common, ellipsoid, half_space, rod, sphere, tube};
-use crate::synthetic::tissue::{FAT, GREY, LENS, MUSCLE, SKIN, Tissue, VITREOUS};
+use crate::synthetic::scene::Tissue;
+use crate::synthetic::sdf::{Solid, common, ellipsoid, half_space, sphere, tube};
+use crate::synthetic::tissue::{FAT, GREY, LENS, MUSCLE, SKIN, VITREOUS};
 
 const GLOBE: (f32, f32, f32) = (31.5, -71.5, 15.0);
 
 /// The bony sockets: cones whose inner walls are parallel.
 pub(super) fn orbits() -> Solid {
-    rod(&[(33.0, -84.0, 16.5, 18.5), (29.0, -72.0, 16.0, 17.5), (13.0, -38.0, 14.0, 4.0)]).mirrored()
+    tube(&[(34.0, -90.0, 17.0, 18.5), (30.0, -74.0, 16.0, 17.5), (23.0, -57.0, 15.0, 11.5), (13.0, -36.0, 14.0, 3.4)])
+        .mirrored()
 }
 
 /// Orbital fat, muscles, nerve, globe and lens.

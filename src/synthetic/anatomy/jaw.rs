@@ -1,13 +1,14 @@
 //! The lower jaw and the hyoid bone.
 
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, blend, block, ellipsoid, rod, tube};
-use crate::synthetic::tissue::{CORTICAL, DIPLOE, Tissue};
+use crate::synthetic::tissue::{CORTICAL, DIPLOE};
 
 /// Mandible and hyoid.
 pub(super) fn tissues() -> Vec<Tissue> {
     let hyoid = tube(&[(0.0, -39.0, -97.0, 3.2), (12.0, -35.0, -97.0, 2.6), (22.0, -20.0, -93.0, 1.8)]).mirrored();
     vec![
-        Tissue::new(CORTICAL, mandible()).core(1.9, DIPLOE).beneath_skin(2.6),
+        Tissue::new(CORTICAL, mandible()).core(2.6, DIPLOE).beneath_skin(2.6),
         Tissue::new(CORTICAL, hyoid).beneath_skin(3.0),
     ]
 }

@@ -16,11 +16,11 @@ mod spine;
 mod teeth;
 mod vessels;
 
-use super::raster::Scene;
-use super::tissue::{FAT, SKIN, Tissue};
+use super::scene::{Scene, Tissue};
+use super::tissue::{FAT, SKIN};
 
 /// All tissues, in the order in which they are painted.
-pub(super) fn head() -> Scene {
+pub(super) fn head(edge_mm: f32) -> Scene {
     let skin = face::skin();
     let mut tissues = vec![Tissue::new(SKIN, skin.clone()).core(2.0, FAT)];
     tissues.extend(muscle::tissues());
@@ -32,5 +32,5 @@ pub(super) fn head() -> Scene {
     tissues.extend(airway::tissues());
     tissues.extend(teeth::tissues());
     tissues.extend(vessels::tissues());
-    Scene { skin, tissues }
+    Scene { skin, tissues, edge_mm }
 }

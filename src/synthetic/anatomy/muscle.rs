@@ -1,7 +1,8 @@
 //! Muscles, glands and the deep soft tissue of face and neck.
 
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, blend, ellipsoid, tube};
-use crate::synthetic::tissue::{CARTILAGE, GLAND, MUSCLE, THYROID, Tissue};
+use crate::synthetic::tissue::{CARTILAGE, GLAND, MUSCLE, THYROID};
 
 /// Soft tissue in the order of painting; bone comes later and covers what reaches into it.
 pub(super) fn tissues() -> Vec<Tissue> {

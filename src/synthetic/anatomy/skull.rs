@@ -1,8 +1,9 @@
 //! The skull without the lower jaw.
 
 use super::eye;
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, blend, common, ellipsoid, half_space, rod, sphere, tube};
-use crate::synthetic::tissue::{CORTICAL, DIPLOE, Material, SUTURE, THIN_BONE, Tissue};
+use crate::synthetic::tissue::{CORTICAL, DIPLOE, Material, SUTURE, THIN_BONE};
 
 /// Thickness of the vault, mm.
 const VAULT_MM: f32 = 6.0;

@@ -1,7 +1,8 @@
 //! The cervical spine.
 
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, blend, ellipsoid, rod, tube};
-use crate::synthetic::tissue::{CSF, DISC, Material, Tissue, VERTEBRAL_SPONGE, WHITE};
+use crate::synthetic::tissue::{CSF, DISC, Material, VERTEBRAL_SPONGE, WHITE};
 
 /// Cortical bone of the vertebrae is thinner, so looks softer, than that of the skull.
 const VERTEBRAL_CORTEX: Material = Material::Uniform(850.0);

@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Solid, blend, block, ellipsoid, rod, sphere};
-use crate::synthetic::tissue::{DENTINE, ENAMEL, FILLING, MUSCLE, Tissue};
+use crate::synthetic::tissue::{DENTINE, ENAMEL, FILLING, MUSCLE};
 
 /// One tooth of the left half.
 struct Tooth {

@@ -1,8 +1,9 @@
 //! Vessels filled with contrast medium.
 
 use super::skull;
+use crate::synthetic::scene::Tissue;
 use crate::synthetic::sdf::{Node, Solid, blend, common, sphere, tube};
-use crate::synthetic::tissue::{CONTRAST, Tissue};
+use crate::synthetic::tissue::CONTRAST;
 
 /// Arteries and veins, one tissue each, so that far ones are skipped.
 pub(super) fn tissues() -> Vec<Tissue> {

@@ -1,0 +1,115 @@
+//! A scene: tissues, painted one over the other.
+
+use glam::Vec3;
+
+use super::sdf::{Ball, Range, Solid};
+use super::tissue::{AIR_HU, Material, mix, smooth_step};
+
+/// A solid and what it is made of, painted over everything that comes before it in the scene.
+#[derive(Debug, Clone)]
+pub(super) struct Tissue {
+    solid: Solid,
+    /// Depth beneath the solid's surface (mm) from which a material holds; the outermost first.
+    coats: Vec<(f32, Material)>,
+    /// How deep beneath the skin the solid is cut off, mm.
+    beneath_skin_mm: Option<f32>,
+}
+
+/// Tissues in the order in which they are painted.
+#[derive(Debug, Clone)]
+pub(super) struct Scene {
+    /// The outer surface of the body, beneath which tissues may be cut off.
+    pub(super) skin: Solid,
+    pub(super) tissues: Vec<Tissue>,
+    /// Half the width of the tissues' edges, mm.
+    pub(super) edge_mm: f32,
+}
+
+impl Tissue {
+    pub(super) fn new(material: Material, solid: Solid) -> Self {
+        Tissue { solid, coats: vec![(0.0, material)], beneath_skin_mm: None }
+    }
+
+    /// With another material from `depth_mm` inwards.
+    pub(super) fn core(mut self, depth_mm: f32, material: Material) -> Self {
+        self.coats.push((depth_mm, material));
+        self
+    }
+
+    /// Cut off where it would come closer than `mm` to the surface of the skin.
+    pub(super) fn beneath_skin(mut self, mm: f32) -> Self {
+        self.beneath_skin_mm = Some(mm);
+        self
+    }
+}
+
+impl Scene {
+    /// Value at `p`, HU.
+    pub(super) fn hu(&self, p: Vec3) -> f32 {
+        let mut skin_mm = None;
+        let mut hu = AIR_HU;
+        for tissue in &self.tissues {
+            let mut d = tissue.solid.distance(p);
+            if let Some(mm) = tissue.beneath_skin_mm
+                && d < self.edge_mm
+            {
+                d = d.max(*skin_mm.get_or_insert_with(|| self.skin.distance(p)) + mm);
+            }
+            for &(depth_mm, material) in &tissue.coats {
+                if d + depth_mm < self.edge_mm {
+                    let share = smooth_step(-self.edge_mm, self.edge_mm, -(d + depth_mm));
+                    hu = mix(hu, material.hu(p, -d), share);
+                }
+            }
+        }
+        hu
+    }
+
+    /// A scene with the same values in `ball`, without what cannot matter there.
+    pub(super) fn near(&self, ball: Ball) -> Scene {
+        let skin_mm = self.skin.range(ball);
+        let mut tissues: Vec<Tissue> = Vec::new();
+        for tissue in &self.tissues {
+            let Some((tissue, covers)) = tissue.near(ball, skin_mm, self.edge_mm) else { continue };
+            if covers {
+                tissues.clear();
+            }
+            tissues.push(tissue);
+        }
+        let skin =
+            if tissues.iter().any(|t| t.beneath_skin_mm.is_some()) { self.skin.near(ball) } else { Solid::Everywhere };
+        Scene { skin, tissues, edge_mm: self.edge_mm }
+    }
+}
+
+impl Tissue {
+    /// The tissue in `ball`, if it is there at all, and whether it covers all of it.
+    fn near(&self, ball: Ball, skin_mm: Range, edge_mm: f32) -> Option<(Tissue, bool)> {
+        let own = self.solid.range(ball);
+        if own.low >= edge_mm {
+            return None;
+        }
+        let cut = self.beneath_skin_mm.map(|mm| Range { low: skin_mm.low + mm, high: skin_mm.high + mm });
+        let all = cut.map_or(own, |cut| Range { low: own.low.max(cut.low), high: own.high.max(cut.high) });
+        if all.low >= edge_mm {
+            return None;
+        }
+        let beneath_skin_mm = self.beneath_skin_mm.filter(|_| cut.is_some_and(|cut| cut.high > own.low));
+
+        let solidly = |depth_mm: f32| all.high + depth_mm <= -edge_mm;
+        let outermost = self.coats.iter().rposition(|&(depth_mm, _)| solidly(depth_mm)).unwrap_or(0);
+        let coats: Vec<_> = self.coats[outermost..].iter().copied().filter(|&(mm, _)| all.low + mm < edge_mm).collect();
+
+        let covers = solidly(self.coats[0].0);
+        let same_everywhere = match coats[..] {
+            [(depth_mm, material)] => solidly(depth_mm) && -all.high >= material.varies_to_mm(),
+            _ => false,
+        };
+        let tissue = if same_everywhere {
+            Tissue { solid: Solid::Everywhere, coats, beneath_skin_mm: None }
+        } else {
+            Tissue { solid: self.solid.near(ball), coats, beneath_skin_mm }
+        };
+        Some((tissue, covers))
+    }
+}
