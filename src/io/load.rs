@@ -142,7 +142,10 @@ mod tests {
     fn a_path_like_nothing_is_answered_with_what_exists() {
         let error = format_of(&source("qqqq/zzzz.nrrd")).expect_err("no such path");
         let remedy = error.remedy_text().unwrap_or_default();
-        assert!(remedy.contains("in ") && remedy.contains("src"), "should name the folder that exists, found: {remedy}");
+        assert!(
+            remedy.contains("in ") && remedy.contains("src"),
+            "should name the folder that exists, found: {remedy}"
+        );
     }
 
     #[test]
