@@ -172,11 +172,6 @@ impl Error {
         self.0.place.as_ref()
     }
 
-    /// What was found, where that was said.
-    pub fn found_text(&self) -> Option<&str> {
-        self.0.found.as_deref()
-    }
-
     /// The error of a library behind this one.
     pub fn cause(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.0.source.as_deref().map(|source| source as &(dyn std::error::Error + 'static))

@@ -76,6 +76,29 @@ fn the_pipelines_that_the_readme_renders_are_there() {
     }
 }
 
+/// Every key that may be written stands in `pipelines/README.md`.
+#[test]
+fn the_keys_of_a_pipeline_are_explained() {
+    fn keys(schema: &serde_json::Value, found: &mut std::collections::BTreeSet<String>) {
+        match schema {
+            serde_json::Value::Object(entries) => {
+                let properties = entries.get("properties").and_then(serde_json::Value::as_object);
+                found.extend(properties.into_iter().flat_map(|p| p.keys().cloned()));
+                entries.values().for_each(|value| keys(value, found));
+            }
+            serde_json::Value::Array(items) => items.iter().for_each(|item| keys(item, found)),
+            _ => {}
+        }
+    }
+    let mut found = std::collections::BTreeSet::new();
+    keys(&pellucid::spec::pipeline_schema(), &mut found);
+    let explained =
+        |key: &String| PIPELINES_README.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == key);
+    let unexplained: Vec<&String> = found.iter().filter(|key| !explained(key)).collect();
+    assert!(found.len() > 30, "the schema was not understood: found only {found:?}");
+    assert!(unexplained.is_empty(), "pipelines/README.md says nothing of {unexplained:?}");
+}
+
 #[test]
 fn links_between_documents_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -23,7 +23,7 @@ use pellucid::{Error, Fault, Result};
 
 /// CT volume rendering with a known error: a scan and a YAML pipeline in, a picture within a tolerance out.
 #[derive(Debug, Parser)]
-#[command(version, propagate_version = true, max_term_width = 100)]
+#[command(version, max_term_width = 100)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     global: Global,
@@ -32,6 +32,7 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Options of every command")]
 struct Global {
     /// Threads to compute with; all cores unless told. The picture does not depend on it
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
@@ -87,12 +88,10 @@ impl PipelineArguments {
     }
 }
 
-/// How a result is printed.
+/// How a result is printed: for people or for programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// For people
     Text,
-    /// For programs
     Json,
 }
 

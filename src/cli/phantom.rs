@@ -23,7 +23,7 @@ enum Kind {
 }
 
 #[derive(Debug, clap::Args)]
-#[group(id = "target", required = true, multiple = true, args = ["nrrd", "dicom"])]
+#[command(group(clap::ArgGroup::new("target").required(true).multiple(true).args(["nrrd", "dicom"])))]
 struct Head {
     /// Write a NRRD file
     #[arg(long, value_name = "FILE")]

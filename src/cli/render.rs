@@ -18,12 +18,18 @@ pub(super) struct Render {
     /// The picture to write, .png or .exr; that of the pipeline unless told
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+
+    /// Recompute N random pixels by the oracle and state the error; short for `--set certify=N`
+    #[arg(long, value_name = "N")]
+    certify: Option<u32>,
 }
 
 impl Render {
     /// Renders; the picture's path goes to stdout, what it took to stderr.
     pub(super) fn run(&self, global: &Global) -> Result<()> {
-        let spec = Spec::load(&self.pipeline.pipeline, &self.pipeline.overrides())?;
+        let mut overrides = self.pipeline.overrides();
+        overrides.extend(self.certify.map(|count| format!("certify={count}")));
+        let spec = Spec::load(&self.pipeline.pipeline, &overrides)?;
         let bar = Bar::new(global.quiet);
         let options = Options { output: self.output.clone() };
         let outcome = pipeline::run(&spec, &options, &|event| bar.hear(event));
@@ -47,6 +53,7 @@ fn summary(outcome: &Outcome) -> String {
         format!("{} on {} threads{}", sidecar.method.kernel, sidecar.threads, memory.unwrap_or_default()),
         format!("{} of {} voxels below the window, {} above", clipped.below, clipped.voxels, clipped.above),
     ];
+    lines.extend(sidecar.certificate.iter().map(|c| format!("{}; largest error {:.2e}", c.statement, c.largest_error)));
     lines.extend(sidecar.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.push(format!("how it was made: {}", outcome.sidecar_path.display()));
     lines.join("\n")

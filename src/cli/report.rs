@@ -55,10 +55,9 @@ impl Marked {
             return None;
         }
         let name = error.path().map_or_else(|| "pipeline".to_string(), |path| path.display().to_string());
-        let label = error.found_text().map(str::to_string);
         Some(Marked {
             source: NamedSource::new(name, place.text.clone()),
-            label: LabeledSpan::new(label, offset, length.min(place.text.len() - offset)),
+            label: LabeledSpan::new(None, offset, length.min(place.text.len() - offset)),
         })
     }
 }

@@ -16,9 +16,7 @@ pub(super) struct Schema {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Kind {
-    /// Pipelines
     Pipeline,
-    /// Presets
     Preset,
 }
 

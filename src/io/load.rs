@@ -104,7 +104,7 @@ fn missing(path: &Path) -> Error {
     let nearest = names.max_by(|a, b| similarity(a).total_cmp(&similarity(b))).filter(|name| similarity(name) > 0.8);
     match nearest {
         Some(name) => error.remedy(format!("did you mean {}?", folder.join(name).display())),
-        None => error.remedy(format!("{} exists; look there for the right name", shown(&folder))),
+        None => error.remedy(format!("look for the right name in {}", shown(&folder))),
     }
 }
 
@@ -142,7 +142,10 @@ mod tests {
     fn a_path_like_nothing_is_answered_with_what_exists() {
         let error = format_of(&source("qqqq/zzzz.nrrd")).expect_err("no such path");
         let remedy = error.remedy_text().unwrap_or_default();
-        assert!(remedy.contains("src exists"), "should name the folder that exists, found: {remedy}");
+        assert!(
+            remedy.contains("in ") && remedy.contains("src"),
+            "should name the folder that exists, found: {remedy}"
+        );
     }
 
     #[test]

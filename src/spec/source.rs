@@ -59,6 +59,15 @@ impl Source {
         &self.path
     }
 
+    /// A path that is written at a key path: one of the file is relative to the file, one of an override to the working
+    /// directory, where whoever typed it stands.
+    pub(super) fn resolve(&self, key_path: &str, path: &Path) -> PathBuf {
+        match self.tree.nearest(key_path).origin {
+            Origin::Override(_) => path.to_path_buf(),
+            Origin::File { .. } => self.path.parent().unwrap_or(Path::new("")).join(path),
+        }
+    }
+
     /// The text as it is in the file.
     pub(super) fn text(&self) -> &str {
         &self.text
