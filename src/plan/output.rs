@@ -29,11 +29,8 @@ pub enum Format {
 impl Output {
     /// The path a caller wants, else that of the spec, else the pipeline's name with `.png`.
     pub(super) fn resolve(spec: &Spec, wanted: Option<&Path>) -> Result<Self> {
-        let path = match (wanted, &spec.pipeline.output) {
-            (Some(path), _) => path.to_path_buf(),
-            (None, Some(path)) => spec.resolve(path),
-            (None, None) => spec.path().with_extension("png"),
-        };
+        let path = wanted.map(Path::to_path_buf).or_else(|| spec.output());
+        let path = path.unwrap_or_else(|| spec.path().with_extension("png"));
         let suffix = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         let bits = spec.pipeline.image.as_ref().and_then(|image| image.bits).unwrap_or(Bits::Eight);
         let format = match (suffix.as_str(), bits) {

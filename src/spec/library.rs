@@ -52,7 +52,7 @@ fn typed(source: Source, name: &str) -> Result<LoadedPreset> {
 pub(super) fn find(name: &str, pipeline: &Source, key_path: &str) -> Result<LoadedPreset> {
     let folder = pipeline.path().parent().unwrap_or(Path::new(""));
     if is_path(name) {
-        let path = folder.join(name);
+        let path = pipeline.resolve(key_path, Path::new(name));
         if !path.is_file() {
             let error = pipeline.error(key_path, "there is no such preset file").found(path.display().to_string());
             return Err(

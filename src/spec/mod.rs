@@ -63,7 +63,7 @@ pub struct Spec {
 pub enum VolumeSource {
     /// A file or folder.
     File {
-        /// Its path, resolved from the pipeline's folder.
+        /// Its path, relative to the working directory.
         path: PathBuf,
         /// Which series of a folder.
         series: Option<Series>,
@@ -121,15 +121,15 @@ impl Spec {
         match (&volume.phantom, &volume.source) {
             (Some(phantom), _) => VolumeSource::Phantom(phantom.clone()),
             (None, source) => VolumeSource::File {
-                path: self.resolve(source.as_deref().unwrap_or(Path::new(""))),
+                path: self.source.resolve("volume.source", source.as_deref().unwrap_or(Path::new(""))),
                 series: volume.series.clone(),
             },
         }
     }
 
-    /// A path of the pipeline: relative ones are relative to its file.
-    pub fn resolve(&self, path: &Path) -> PathBuf {
-        self.path().parent().unwrap_or(Path::new("")).join(path)
+    /// The picture's path, if the pipeline names one, relative to the working directory.
+    pub fn output(&self) -> Option<PathBuf> {
+        self.pipeline.output.as_deref().map(|path| self.source.resolve("output", path))
     }
 
     /// The volume with its values understood as the pipeline says: `values` and `shift_hu`.

@@ -3,7 +3,15 @@
 use super::tree::{self, Key, Node, Origin, Value};
 use crate::error::{Error, Fault, Result};
 
-/// Applies the override of this index: `path=value`, with the value in YAML, and `null` to remove a key.
+/// Keys that exclude each other, by their paths: a scan is one or the other, and so is a method.
+const ALTERNATIVES: [&[&str]; 3] = [
+    &["volume.source", "volume.phantom"],
+    &["integrate.exact", "integrate.march", "integrate.reference"],
+    &["integrate.march.step_mm", "integrate.march.step_voxels"],
+];
+
+/// Applies the override of this index: `path=value`, with the value in YAML, and `null` to remove a key. What the file
+/// says in a key that excludes this one goes: `--set volume.source=…` renders another scan in place of a phantom.
 ///
 /// # Errors
 /// `Fault::Spec`, naming the override, for one that is not of that form or leads into a list where there is nothing.
@@ -27,7 +35,35 @@ pub(super) fn apply(tree: &mut Node, index: usize, text: &str) -> Result<()> {
         set_origin(&mut node, origin);
         node
     };
+    if value.value != Value::Null {
+        remove_alternatives(tree, path);
+    }
     set(tree, &parts, value, origin).map_err(|what| refused(&what).element(path))
+}
+
+/// Removes the keys of the file that the key at `path`, or one above it, excludes. Those that another override has set
+/// stay, so that two overrides that exclude each other are still an error.
+fn remove_alternatives(tree: &mut Node, path: &str) {
+    let is_within = |key: &str| path == key || path.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'));
+    for keys in ALTERNATIVES.iter().filter(|keys| keys.iter().any(|key| is_within(key))) {
+        for excluded in keys.iter().filter(|key| !is_within(key)) {
+            remove_from_file(tree, excluded);
+        }
+    }
+}
+
+fn remove_from_file(tree: &mut Node, key_path: &str) {
+    let mut node = tree;
+    let mut parts = key_path.split('.').peekable();
+    while let Some(part) = parts.next() {
+        let Value::Map(entries) = &mut node.value else { return };
+        if parts.peek().is_none() {
+            entries.retain(|(key, node)| key.name != part || matches!(node.origin, Origin::Override(_)));
+            return;
+        }
+        let Some((_, child)) = entries.iter_mut().find(|(key, _)| key.name == part) else { return };
+        node = child;
+    }
 }
 
 fn set_origin(node: &mut Node, origin: Origin) {
@@ -74,4 +110,33 @@ fn set(node: &mut Node, parts: &[&str], value: Node, origin: Origin) -> Result<(
         entries.len() - 1
     });
     set(&mut entries[at].1, rest, value, origin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys_after(file: &str, overrides: &[&str], of: &str) -> Vec<String> {
+        let mut tree = tree::parse(file).expect("valid YAML");
+        for (index, text) in overrides.iter().enumerate() {
+            apply(&mut tree, index, text).expect("a valid override");
+        }
+        let Value::Map(entries) = &tree.child(of).expect("the mapping").value else { panic!("{of} is no mapping") };
+        entries.iter().map(|(key, _)| key.name.clone()).collect()
+    }
+
+    #[test]
+    fn an_override_takes_the_place_of_what_it_excludes() {
+        let phantom = "volume: { phantom: { head: {} } }";
+        assert_eq!(keys_after(phantom, &["volume.source=scan"], "volume"), ["source"]);
+        let exact = "integrate: { exact: { tolerance: 1/100 } }";
+        assert_eq!(keys_after(exact, &["integrate.march.step_mm=1"], "integrate"), ["march"]);
+        assert_eq!(keys_after(exact, &["integrate.exact.tolerance=1/50"], "integrate"), ["exact"]);
+    }
+
+    #[test]
+    fn overrides_that_exclude_each_other_both_stay() {
+        let found = keys_after("volume: { source: a }", &["volume.phantom.head={}", "volume.source=b"], "volume");
+        assert_eq!(found, ["phantom", "source"], "so that the check of the pipeline refuses them");
+    }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
-use super::complaint::Complaint;
+use super::complaint::{Complaint, Parts};
 use super::overrides;
 use super::tree::{self, Node, Origin, Value};
 use super::typed;
@@ -59,6 +59,15 @@ impl Source {
         &self.path
     }
 
+    /// A path that is written at a key path: one of the file is relative to the file, one of an override to the working
+    /// directory, where whoever typed it stands.
+    pub(super) fn resolve(&self, key_path: &str, path: &Path) -> PathBuf {
+        match self.tree.nearest(key_path).origin {
+            Origin::Override(_) => path.to_path_buf(),
+            Origin::File { .. } => self.path.parent().unwrap_or(Path::new("")).join(path),
+        }
+    }
+
     /// The text as it is in the file.
     pub(super) fn text(&self) -> &str {
         &self.text
@@ -80,7 +89,7 @@ impl Source {
     }
 
     fn complain(&self, complaint: Complaint) -> Error {
-        let Complaint { what, found, expected, remedy, place } = complaint;
+        let Parts { what, found, expected, remedy, place } = *complaint.0;
         let mut error = Error::new(Fault::Spec, what);
         let (key_path, origin) = place.unwrap_or((String::new(), self.tree.origin));
         if !key_path.is_empty() {

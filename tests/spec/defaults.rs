@@ -58,7 +58,10 @@ fn paths_are_relative_to_the_pipeline() {
     let spec = pellucid::spec::Spec::from_text(&text, Path::new("pipelines/a.yaml"), &[]).unwrap();
     let expected = VolumeSource::File { path: PathBuf::from("pipelines/../scans/head"), series: Some(Series::Largest) };
     assert_eq!(spec.volume_source(), expected);
-    assert_eq!(spec.resolve(Path::new("/data/head")), PathBuf::from("/data/head"), "an absolute path stays");
+    assert_eq!(spec.output(), None);
+    let text = format!("{text}output: /pictures/head.png\n");
+    let spec = pellucid::spec::Spec::from_text(&text, Path::new("pipelines/a.yaml"), &[]).unwrap();
+    assert_eq!(spec.output(), Some(PathBuf::from("/pictures/head.png")), "an absolute path stays");
 }
 
 #[test]
