@@ -44,14 +44,14 @@ image: { size: [200, 100], background: transparent, bits: 16 }
 certify: 500
 ";
     insta::assert_snapshot!(explain(&plan(rest)), @r"
-    volume     64 x 48 x 33 voxels of 1.000 x 2.000 x 3.000 mm, i16, values -1000 to 1800 HU                        202.8 kB
-    field      gradient magnitude at the voxels, by central differences, f32                                        405.5 kB
-    field      gradient at samples, by central differences, not stored                                                     -
-    field      macrocells: value ranges of blocks of 8 x 8 x 8 cells                                                  3.1 kB
-    classify   2D transfer function of 2 layers, 23 x 11 knots, values -1024 to 1500, gradients to 1500 per mm       14.1 kB
-    integrate  march/i16/tf2d/lit: steps of 1.0000 mm, midpoint samples, front to back, white jitter of seed 1      320.0 kB
-    image      PNG, 16 bits, sRGB, straight alpha                                                                   160.0 kB
-    oracle     500 random pixels again in f64                                                                              -
+    volume     64 x 48 x 33 voxels of 1.000 x 2.000 x 3.000 mm, i16, values -1000 to 1800 HU                     202.8 kB
+    field      gradient magnitude at the voxels, by central differences, f32                                     405.5 kB
+    field      gradient at samples, by central differences, not stored                                                  -
+    field      macrocells: value ranges of blocks of 8 x 8 x 8 cells                                               3.1 kB
+    classify   2D transfer function of 2 layers, 23 x 11 knots, values -1024 to 1500, gradients to 1500 per mm    14.1 kB
+    integrate  march/i16/tf2d/lit: steps of 1.0000 mm, midpoint samples, front to back, white jitter of seed 1   320.0 kB
+    image      PNG, 16 bits, sRGB, straight alpha                                                                160.0 kB
+    oracle     500 random pixels again in f64                                                                           -
     memory     1.1 MB
 
     layers     skin + layer 2

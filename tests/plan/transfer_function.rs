@@ -94,3 +94,21 @@ fn shifted_values_become_hu() {
     assert_eq!(written(", values: hu"), (Quantity::Hu, 1024.0));
     assert_eq!(written(", shift_hu: -1024"), (Quantity::Hu, 0.0));
 }
+
+#[test]
+fn a_widget_that_takes_too_many_rows_is_named() {
+    let sharp = "- { triangle: { apex_hu: 0, opening_mm: 1, edge: 0.01, gradient_hu_per_mm: [1, 1000] }, opacity_per_mm: 1, color: red }";
+    let message = Plan::new(&spec(&widgets(sharp)), &volume(), None).unwrap_err().to_string();
+    let expected = "pipelines/scene.yaml: a widget's shape takes too many rows of gradient magnitudes \
+                    (transfer_function.0.widgets.0)";
+    assert!(message.starts_with(expected), "found {message}");
+}
+
+#[test]
+fn a_scene_that_shows_nothing_is_warned_of() {
+    let beyond = plan(&widgets("- { rectangle: { hu: [2000, 3000] }, extinction_per_mm: 1, color: white }"));
+    let nothing = |plan: &Plan| plan.warnings.iter().any(|w| w.contains("nothing in this volume"));
+    assert!(nothing(&beyond), "the volume ends at 1800: {:?}", beyond.warnings);
+    let within = plan(&widgets("- { rectangle: { hu: [1700, 3000] }, extinction_per_mm: 1, color: white }"));
+    assert!(!nothing(&within), "found {:?}", within.warnings);
+}

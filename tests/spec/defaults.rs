@@ -58,10 +58,10 @@ fn paths_are_relative_to_the_pipeline() {
     let spec = pellucid::spec::Spec::from_text(&text, Path::new("pipelines/a.yaml"), &[]).unwrap();
     let expected = VolumeSource::File { path: PathBuf::from("pipelines/../scans/head"), series: Some(Series::Largest) };
     assert_eq!(spec.volume_source(), expected);
-    let text = SHORT.replace("phantom: head", "source: /data/head");
+    assert_eq!(spec.output(), None);
+    let text = format!("{text}output: /pictures/head.png\n");
     let spec = pellucid::spec::Spec::from_text(&text, Path::new("pipelines/a.yaml"), &[]).unwrap();
-    let expected = VolumeSource::File { path: PathBuf::from("/data/head"), series: None };
-    assert_eq!(spec.volume_source(), expected, "an absolute path stays");
+    assert_eq!(spec.output(), Some(PathBuf::from("/pictures/head.png")), "an absolute path stays");
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Mistakes of authors. Each row: the text, with «» around what the error must point at, and the whole message after the
 //! file's name.
 
+use pellucid::spec::BUILT_IN_PRESETS;
+
 use super::{SHORT, mistake};
 
 /// Checks the message and that the place is the marked one.
@@ -49,10 +51,14 @@ fn unknown_keys_and_choices_come_with_a_suggestion() {
         "there is no such key (effects.shading.lights.1.directional.toward): found toward, expected one of towards, \
          color\n  remedy: did you mean towards?",
     );
+    let known: Vec<&str> = BUILT_IN_PRESETS.iter().map(|(name, _)| *name).collect();
     check(
-        &SHORT.replace("bone", "«bones»"),
-        "there is no such preset (transfer_function.0.preset): found bones, expected one of bone, skin, or a path to a \
-         .yaml file\n  remedy: did you mean bone?",
+        &SHORT.replace("bone", "«bonee»"),
+        &format!(
+            "there is no such preset (transfer_function.0.preset): found bonee, expected one of {}, or a path to a .yaml \
+             file\n  remedy: did you mean bone?",
+            known.join(", ")
+        ),
     );
 }
 

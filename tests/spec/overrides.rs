@@ -62,3 +62,18 @@ fn errors_name_the_override() {
     assert!(message("camera..view=left").contains("an empty key"));
     assert!(message("camera={ view: ").contains("not valid YAML"));
 }
+
+#[test]
+fn paths_of_an_override_are_relative_to_the_working_directory() {
+    use pellucid::spec::VolumeSource;
+    let text = SHORT.replace("phantom: head", "source: scan.nrrd");
+    let path = |overrides: &[String]| {
+        let spec = Spec::from_text(&text, Path::new("pipelines/scene.yaml"), overrides).unwrap();
+        match spec.volume_source() {
+            VolumeSource::File { path, .. } => path,
+            other => panic!("found {other:?}"),
+        }
+    };
+    assert_eq!(path(&[]), Path::new("pipelines/scan.nrrd"));
+    assert_eq!(path(&["volume.source=scans/head.nrrd".to_owned()]), Path::new("scans/head.nrrd"));
+}

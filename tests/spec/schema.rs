@@ -32,7 +32,7 @@ fn complaint(root: &Value, schema: &Value, instance: &Value) -> Option<String> {
             "maxItems" => instance.as_array().is_none_or(|a| a.len() as u64 <= value.as_u64().unwrap()),
             "items" => return instance.as_array()?.iter().find_map(|item| complaint(root, value, item)),
             "required" => {
-                let Some(object) = instance.as_object() else { return None };
+                let object = instance.as_object()?;
                 value.as_array().unwrap().iter().all(|key| object.contains_key(key.as_str().unwrap()))
             }
             "properties" => {
