@@ -66,7 +66,11 @@ fn a_layer_of_no_strength_is_left_out() {
 }
 
 #[test]
-fn the_reference_skips_nothing() {
-    assert!(plan("integrate: exact\n").demand.macrocells);
-    assert!(!plan("integrate: reference\n").demand.macrocells);
+fn only_marching_reads_macrocells() {
+    assert!(plan("integrate: { march: { step_voxels: 1 } }\n").demand.macrocells);
+    for other in ["exact", "reference"] {
+        let plan = plan(&format!("integrate: {other}\n"));
+        assert!(!plan.demand.macrocells, "{other} skips cell by cell, or not at all");
+        assert!(plan.not_computed.iter().any(|o| o.what == "macrocells"), "{other} says so");
+    }
 }

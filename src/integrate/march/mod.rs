@@ -14,6 +14,7 @@ pub(super) use kernel::Kernel;
 
 use crate::error::{Error, Fault, Result};
 use crate::plan::March;
+use crate::scene::{Model, Scene};
 use crate::volume::Grid;
 
 /// Samples along one ray beyond which a step is refused.
@@ -22,9 +23,15 @@ const MOST_SAMPLES_PER_RAY: f64 = 1e8;
 /// Refuses settings that mean nothing or would take for ever.
 ///
 /// # Errors
-/// `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
+/// `Fault::Unsupported` for a scene that is not of light, `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
 /// through the volume would take more than 10⁸ samples.
-pub(super) fn check(settings: &March, grid: &Grid) -> Result<()> {
+pub(super) fn check(settings: &March, scene: &Scene, grid: &Grid) -> Result<()> {
+    if scene.model != Model::Light {
+        return Err(Error::new(Fault::Unsupported, "marching integrates light only")
+            .element("integrate.march")
+            .found("a scene of values or surfaces")
+            .remedy("use integrate: exact, which finds them without steps"));
+    }
     let step = settings.step_mm;
     if !(step.is_finite() && step > 0.0) {
         return Err(Error::new(Fault::Spec, "the step is not usable")
