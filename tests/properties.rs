@@ -1,1 +1,182 @@
-//! Tests of properties.
+//! Properties over random volumes, affines, cameras and transfer functions: the exact integrator is within its tolerance
+//! and its bound of the oracle, whatever it is given.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use pellucid::integrate::exact::{Precision, tracer};
+use pellucid::oracle::Oracle;
+use pellucid::scene::{Background, Camera, Light, Projection, Scene, Shading};
+use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
+use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
+use proptest::prelude::*;
+
+/// Rays per case.
+const RAYS: usize = 3;
+
+fn direction() -> impl Strategy<Value = DVec3> {
+    (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64)
+        .prop_map(|(x, y, z)| DVec3::new(x, y, z))
+        .prop_filter("a direction needs a length", |d| d.length() > 0.1)
+        .prop_map(DVec3::normalize)
+}
+
+/// Rotation, anisotropic spacing, shear, and a reflection in half of the cases.
+fn affine() -> impl Strategy<Value = DAffine3> {
+    let spacing = prop::array::uniform3(0.2..4.0f64);
+    let shear = prop::array::uniform3(-0.6..0.6f64);
+    (direction(), 0.0..6.0f64, spacing, shear, any::<bool>(), prop::array::uniform3(-500.0..500.0f64)).prop_map(
+        |(axis, angle, [a, b, c], [p, q, r], mirrored, origin)| {
+            let sheared = DMat3::from_cols_array(&[1.0, 0.0, 0.0, p, 1.0, 0.0, q, r, 1.0]);
+            let scaled = sheared * DMat3::from_diagonal(DVec3::new(if mirrored { -a } else { a }, b, c));
+            DAffine3::from_mat3_translation(
+                DMat3::from_quat(DQuat::from_axis_angle(axis, angle)) * scaled,
+                origin.into(),
+            )
+        },
+    )
+}
+
+fn volume() -> impl Strategy<Value = Volume> {
+    let dims = prop::array::uniform3(1usize..6);
+    let rescale = prop_oneof![
+        Just(Rescale::IDENTITY),
+        Just(Rescale { slope: 1.0, intercept: -1024.0 }),
+        Just(Rescale { slope: 0.5, intercept: 100.0 }),
+        Just(Rescale { slope: -1.0, intercept: 3.0 }),
+    ];
+    (dims, affine(), rescale, any::<bool>()).prop_flat_map(|(dims, affine, rescale, floats)| {
+        let grid = Grid::new(dims, affine).expect("shear of at most 0.6 leaves three axes");
+        // Few distinct values make plateaus and ties; many make noise.
+        let sample = prop_oneof![Just(0i16), Just(200), -900i16..1500];
+        prop::collection::vec(sample, grid.voxel_count()).prop_map(move |samples| {
+            let samples = if floats {
+                Samples::F32(samples.into_iter().map(|s| f32::from(s) + 0.25).collect())
+            } else {
+                Samples::I16(samples)
+            };
+            Volume::new(grid, samples, rescale, Quantity::Hu).expect("as many samples as voxels")
+        })
+    })
+}
+
+/// Knots at random places, some of them jumps, some thin, some dense, some that emit without absorbing.
+fn curve() -> impl Strategy<Value = Curve> {
+    let extinction = prop_oneof![Just(0.0), 0.0..0.2f64, 0.0..8.0f64];
+    let knot = (-1000.0..1500.0f64, extinction, prop::array::uniform3(0.0..1.0f64), any::<prop::sample::Index>());
+    prop::collection::vec(knot, 1..6).prop_map(|knots| {
+        let made = knots.into_iter().enumerate().flat_map(|(n, (value, s, color, pick))| {
+            let mut optics = Optics::colored(s, color);
+            if pick.index(8) == 0 {
+                optics.emission_per_mm = color.map(|c| 0.05 * c);
+            }
+            let knot = Knot { value, optics };
+            // Every third knot is a jump from nothing.
+            let before = (n % 3 == 2).then_some(Knot { value, optics: Optics::NOTHING });
+            before.into_iter().chain([knot])
+        });
+        Curve::new(made.collect()).expect("finite knots")
+    })
+}
+
+fn weight() -> impl Strategy<Value = Weight> {
+    prop::collection::vec((0.0..900.0f64, 0.0..1.0f64), 1..5)
+        .prop_map(|knots| Weight::new(knots.into_iter().map(|(g, w)| [g, w]).collect()).expect("finite knots"))
+}
+
+fn transfer_function() -> impl Strategy<Value = TransferFunction> {
+    let term = (curve(), prop::option::of(weight())).prop_map(|(curve, weight)| Term { curve, weight });
+    prop::collection::vec(term, 1..4)
+        .prop_map(|terms| TransferFunction::new([-1024.0, 3071.0], 1000.0, terms).expect("a finite domain"))
+}
+
+fn shading() -> impl Strategy<Value = Shading> {
+    let strengths = (0.0..0.4f64, 0.0..1.0f64, 0.0..0.6f64, prop_oneof![Just(1.0), Just(2.0), 1.0..40.0f64]);
+    (strengths, any::<bool>(), prop_oneof![Just(0.0), 1.0..80.0f64], direction()).prop_map(
+        |((ambient, diffuse, specular, shininess), two_sided, soft_gradient_per_mm, towards)| Shading {
+            ambient,
+            diffuse,
+            specular,
+            shininess,
+            two_sided,
+            soft_gradient_per_mm,
+            lights: vec![
+                Light::Headlight { color: [0.8, 0.9, 1.0] },
+                Light::Directional { towards, color: [0.5, 0.3, 0.1] },
+            ],
+        },
+    )
+}
+
+/// A camera that looks at the volume from `distance` times its size, from inside for small ones.
+fn camera(grid: &Grid, from: DVec3, distance: f64, parallel: bool) -> Camera {
+    let center = grid.center_mm();
+    let radius = grid.corners_mm().iter().map(|c| c.distance(center)).fold(0.0, f64::max);
+    let projection = if parallel {
+        Projection::Parallel { height_mm: 1.5 * radius }
+    } else {
+        Projection::Perspective { fov_degrees: 2.0 * (1.0 / distance.max(1.0)).atan().to_degrees() }
+    };
+    let up = from.any_orthonormal_vector();
+    Camera::look_at(center - from * (distance * radius), center, up, projection, [RAYS, 1]).expect("a direction")
+}
+
+/// The pixels of a scene by the exact integrator, held against the oracle. A shaded bound rests on the same proof as an
+/// unshaded one, so both are held to it.
+fn held_to_tolerance_and_bound(volume: &Volume, scene: &Scene, tolerance: f64) -> Result<(), TestCaseError> {
+    let oracle = Oracle::new(volume, scene);
+    for precision in [Precision::Single, Precision::Double] {
+        let tracer = tracer(volume, scene, tolerance, precision);
+        for column in 0..RAYS {
+            let ray = scene.camera.pixel_ray(column, 0);
+            let truth = oracle.radiance(&ray);
+            let Some(found) = tracer.trace(&ray) else {
+                prop_assert_eq!(truth, [0.0; 4], "missed, but the oracle sees something");
+                continue;
+            };
+            let [r, g, b] = found.radiance;
+            let alpha = 1.0 - found.transmittance;
+            prop_assert!((-1e-9..=1.0 + 1e-9).contains(&alpha), "alpha {}", alpha);
+            for (x, t) in [r, g, b, alpha].into_iter().zip(truth) {
+                // A comparison with NaN is false.
+                prop_assert!((x - t).abs() <= found.bound, "{:?}: {} for {}, bound {:e}", precision, x, t, found.bound);
+            }
+            prop_assert!(found.bound <= 1.001 * tolerance, "bound {:e} over tolerance {:e}", found.bound, tolerance);
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn unshaded_pictures_are_within_tolerance_and_bound(
+        volume in volume(),
+        transfer_function in transfer_function(),
+        from in direction(),
+        distance in prop_oneof![Just(0.2), 1.2..6.0f64, Just(1e5)],
+        parallel in any::<bool>(),
+        tolerance in prop_oneof![Just(1.0 / 255.0), Just(1e-3), Just(1e-4)],
+    ) {
+        let camera = camera(volume.grid(), from, distance, parallel);
+        let scene = Scene { transfer_function, shading: None, camera, background: Background::Transparent };
+        held_to_tolerance_and_bound(&volume, &scene, tolerance)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn shaded_pictures_are_within_tolerance_and_bound(
+        volume in volume(),
+        transfer_function in transfer_function(),
+        shading in shading(),
+        from in direction(),
+        distance in prop_oneof![Just(0.2), 1.2..6.0f64],
+        tolerance in prop_oneof![Just(1.0 / 255.0), Just(1e-3)],
+    ) {
+        let camera = camera(volume.grid(), from, distance, false);
+        let scene = Scene { transfer_function, shading: Some(shading), camera, background: Background::Transparent };
+        held_to_tolerance_and_bound(&volume, &scene, tolerance)?;
+    }
+}

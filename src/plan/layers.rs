@@ -1,6 +1,6 @@
 //! Layers of the transfer function: presets and widgets become terms.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::spec::{
     Color, ContourSpec, EmissionSpec, LayerSpec, LoadedPreset, Pipeline, Spec, Tissue, ValuesName, Widget,
 };
@@ -40,9 +40,9 @@ pub(super) fn resolve(
     gradient_range_per_mm: f64,
     emission_scale: f64,
 ) -> Result<Vec<Layer>> {
-    let resolve = |(i, (layer, preset)): (usize, (&LayerSpec, Option<&LoadedPreset>))| {
+    let resolve = |(i, (layer, loaded)): (usize, (&LayerSpec, Option<&LoadedPreset>))| {
         let key_path = format!("transfer_function.{i}");
-        let preset = preset.map(|loaded| &loaded.preset);
+        let preset = loaded.map(|loaded| &loaded.preset);
         if preset.is_some_and(|p| p.values != Some(ValuesName::Arbitrary)) {
             refuse_hu_for_other_values(spec, volume, layer, &key_path)?;
         }
@@ -50,7 +50,9 @@ pub(super) fn resolve(
         let mut max_deviation = 0.0f64;
         let mut terms = Vec::new();
         for (k, widget) in widgets.into_iter().flatten().enumerate() {
-            let named = |error: crate::Error| error.at(spec.path()).element(format!("{key_path}, widget {k}"));
+            let file = loaded.map_or(spec.path(), |loaded| &loaded.path);
+            let prefix = if loaded.is_some() { String::new() } else { format!("{key_path}.") };
+            let named = |error: Error| error.at(file).element(format!("{prefix}widgets.{k}"));
             let expansion = expand(widget, layer.color).map_err(named)?;
             max_deviation = max_deviation.max(expansion.max_deviation);
             for term in expansion.terms {

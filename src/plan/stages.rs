@@ -4,7 +4,7 @@ use crate::scene::Scene;
 use crate::spec::Spec;
 use crate::volume::Grid;
 
-use super::{Exact, March, Method, Plan, VolumeInfo};
+use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, SampleRule, VolumeInfo};
 
 /// One stage of the computation.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -81,18 +81,21 @@ fn classify(plan: &Plan) -> Stage {
     let tf = &plan.scene.transfer_function;
     let values = tf.value_knots().len();
     let [low, high] = tf.window();
-    let layers = plan.layers.len();
+    let layers = match plan.layers.len() {
+        1 => "1 layer".to_owned(),
+        n => format!("{n} layers"),
+    };
     // Four channels in f32: linear along the value, bilinear in a patch.
     let (what, coefficients) = if plan.demand.gradient_magnitude {
         let gradients = tf.gradient_knots().len();
         let size = format!("{values} x {gradients} knots");
         let range = tf.gradient_range_per_mm();
         (
-            format!("2D transfer function of {layers} layers, {size}, {low} to {high} by 0 to {range} per mm"),
+            format!("2D transfer function of {layers}, {size}, values {low} to {high}, gradients to {range} per mm"),
             4 * (gradients - 1),
         )
     } else {
-        (format!("1D transfer function of {layers} layers, {values} knots, {low} to {high}"), 2)
+        (format!("1D transfer function of {layers}, {values} knots, values {low} to {high}"), 2)
     };
     Stage { name: "classify", what, bytes: (4 * 4 * coefficients * (values - 1)) as u64 }
 }
@@ -110,13 +113,38 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
 }
 
 fn describe_method(method: &Method) -> String {
-    match method {
-        Method::Exact(Exact { tolerance }) => format!("within {tolerance:.3e} of each channel of a pixel"),
-        Method::March(March { step_mm, rule, order, .. }) => {
-            format!("steps of {step_mm:.4} mm, {rule:?} samples, {order:?}")
-        }
-        Method::Reference => "every pixel by the oracle".to_owned(),
+    let march = match method {
+        Method::Exact(Exact { tolerance }) => return format!("each channel of a pixel within {tolerance:.3e}"),
+        Method::Reference => return "every pixel by the oracle".to_owned(),
+        Method::March(march) => march,
+    };
+    let rule = match march.rule {
+        SampleRule::Left => "left samples",
+        SampleRule::Midpoint => "midpoint samples",
+        SampleRule::Trapezoid => "trapezoid samples",
+    };
+    let order = match march.order {
+        Order::FrontToBack => "front to back",
+        Order::BackToFront => "back to front",
+    };
+    let mut parts = vec![format!("steps of {:.4} mm", march.step_mm), rule.to_owned(), order.to_owned()];
+    let unusual = [
+        (march.colors == Colors::Straight, "straight colours"),
+        (march.emission == Emission::PerSample, "emission per sample"),
+        (march.lattice == Lattice::ViewPlanes, "on view planes"),
+    ];
+    parts.extend(unusual.into_iter().filter(|(is, _)| *is).map(|(_, text)| text.to_owned()));
+    if let Some(Jitter { seed, kind }) = march.jitter {
+        let kind = match kind {
+            JitterKind::White => "white",
+            JitterKind::LowDiscrepancy => "low-discrepancy",
+        };
+        parts.push(format!("{kind} jitter of seed {seed}"));
     }
+    if march.termination_transmittance > 0.0 {
+        parts.push(format!("until {:.2e} is transmitted", march.termination_transmittance));
+    }
+    parts.join(", ")
 }
 
 pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{self, SeqAccess, Visitor};
+use serde::de::{self, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::BackgroundSpec;
@@ -42,20 +42,12 @@ impl Color {
         }))
     }
 
-    /// The colour of a text: `#rgb`, `#rrggbb` or a name.
-    ///
-    /// # Errors
-    /// What was found and what was expected, as one clause.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        if let Some(digits) = text.strip_prefix('#') {
-            return Self::parse_hex(digits)
-                .ok_or_else(|| format!("{text:?}, expected \"#rgb\" or \"#rrggbb\" in hexadecimal digits"));
+    /// The colour of a text, `#rgb`, `#rrggbb` or a name, if it is one.
+    pub fn parse(text: &str) -> Option<Self> {
+        match text.strip_prefix('#') {
+            Some(digits) => Self::parse_hex(digits),
+            None => NAMES.iter().find(|(name, _)| *name == text).map(|(_, rgb)| Self::from_srgb8(*rgb)),
         }
-        if let Some((_, rgb)) = NAMES.iter().find(|(name, _)| *name == text) {
-            return Ok(Self::from_srgb8(*rgb));
-        }
-        let names: Vec<&str> = NAMES.iter().map(|(name, _)| *name).collect();
-        Err(format!("{text:?}, expected \"#rrggbb\" in quotes, [r, g, b], or one of {}", names.join(", ")))
     }
 
     fn parse_hex(digits: &str) -> Option<Self> {
@@ -68,37 +60,62 @@ impl Color {
     }
 }
 
-struct ColorVisitor;
+/// Expects a colour, or, with `or_transparent`, what is behind the volume.
+struct ColorVisitor {
+    or_transparent: bool,
+}
 
 impl<'de> Visitor<'de> for ColorVisitor {
-    type Value = Color;
+    type Value = BackgroundSpec;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a colour: \"#rrggbb\" in quotes, a name, or [r, g, b]")
+        let names: Vec<&str> = NAMES.iter().map(|(name, _)| *name).collect();
+        let before = if self.or_transparent { "\"transparent\" or " } else { "" };
+        write!(f, "{before}a colour: \"#rgb\" or \"#rrggbb\" in quotes, [r, g, b], or one of {}", names.join(", "))
     }
 
-    fn visit_str<E: de::Error>(self, text: &str) -> Result<Color, E> {
-        Color::parse(text).map_err(|clause| E::custom(format!("found {clause}")))
+    fn visit_str<E: de::Error>(self, text: &str) -> Result<BackgroundSpec, E> {
+        if self.or_transparent && text == "transparent" {
+            return Ok(BackgroundSpec::Transparent);
+        }
+        let color = Color::parse(text).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))?;
+        Ok(BackgroundSpec::Color(color))
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Color, A::Error> {
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<BackgroundSpec, A::Error> {
+        const EXPECTED: &str = "3 numbers: linear red, green and blue";
         let mut rgb = [0.0; 3];
-        for (i, c) in rgb.iter_mut().enumerate() {
-            *c = seq.next_element()?.ok_or_else(|| de::Error::invalid_length(i, &"3 numbers, linear r, g and b"))?;
+        for (i, channel) in rgb.iter_mut().enumerate() {
+            let Share(share) = seq.next_element()?.ok_or_else(|| de::Error::invalid_length(i, &EXPECTED))?;
+            *channel = share;
         }
-        if seq.next_element::<f64>()?.is_some() {
-            return Err(de::Error::invalid_length(4, &"3 numbers, linear r, g and b"));
+        match seq.next_element::<Share>()? {
+            Some(_) => Err(de::Error::invalid_length(4, &EXPECTED)),
+            None => Ok(BackgroundSpec::Color(Color(rgb))),
         }
-        match rgb.iter().find(|c| !(0.0..=1.0).contains(*c)) {
-            Some(c) => Err(de::Error::custom(format!("found {c}, expected linear r, g and b from 0 to 1"))),
-            None => Ok(Color(rgb)),
+    }
+}
+
+/// A number from 0 to 1.
+struct Share(f64);
+
+impl<'de> Deserialize<'de> for Share {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let share = f64::deserialize(deserializer)?;
+        if (0.0..=1.0).contains(&share) {
+            return Ok(Share(share));
         }
+        let expected = &"linear red, green and blue from 0 to 1";
+        Err(de::Error::invalid_value(Unexpected::Float(share), expected))
     }
 }
 
 impl<'de> Deserialize<'de> for Color {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(ColorVisitor)
+        match deserializer.deserialize_any(ColorVisitor { or_transparent: false })? {
+            BackgroundSpec::Color(color) => Ok(color),
+            BackgroundSpec::Transparent => Err(de::Error::custom("a colour is needed here")),
+        }
     }
 }
 
@@ -128,26 +145,7 @@ impl JsonSchema for Color {
 
 impl<'de> Deserialize<'de> for BackgroundSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct BackgroundVisitor;
-        impl<'de> Visitor<'de> for BackgroundVisitor {
-            type Value = BackgroundSpec;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("\"transparent\" or a colour: \"#rrggbb\" in quotes, a name, or [r, g, b]")
-            }
-
-            fn visit_str<E: de::Error>(self, text: &str) -> Result<BackgroundSpec, E> {
-                if text == "transparent" {
-                    return Ok(BackgroundSpec::Transparent);
-                }
-                ColorVisitor.visit_str(text).map(BackgroundSpec::Color)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<BackgroundSpec, A::Error> {
-                ColorVisitor.visit_seq(seq).map(BackgroundSpec::Color)
-            }
-        }
-        deserializer.deserialize_any(BackgroundVisitor)
+        deserializer.deserialize_any(ColorVisitor { or_transparent: true })
     }
 }
 

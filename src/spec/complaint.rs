@@ -7,9 +7,13 @@ use serde::de::{self, Expected, Unexpected};
 use super::suggest::did_you_mean;
 use super::tree::{Node, Origin};
 
-/// What is wrong; the innermost deserializer that sees it adds where.
+/// What is wrong; the innermost deserializer that sees it adds where. Boxed, so that results stay small.
 #[derive(Debug)]
-pub(super) struct Complaint {
+pub(super) struct Complaint(pub(super) Box<Parts>);
+
+/// The parts of an error's message.
+#[derive(Debug)]
+pub(super) struct Parts {
     pub(super) what: String,
     pub(super) found: Option<String>,
     pub(super) expected: Option<String>,
@@ -19,38 +23,38 @@ pub(super) struct Complaint {
 
 impl Complaint {
     pub(super) fn new(what: impl Into<String>) -> Self {
-        Complaint { what: what.into(), found: None, expected: None, remedy: None, place: None }
+        Complaint(Box::new(Parts { what: what.into(), found: None, expected: None, remedy: None, place: None }))
     }
 
     pub(super) fn wrong_kind(node: &Node, expected: &str) -> Self {
         let mut complaint = Complaint::new("a value is of the wrong kind");
-        complaint.found = Some(node.describe());
-        complaint.expected = Some(expected.to_owned());
+        complaint.0.found = Some(node.describe());
+        complaint.0.expected = Some(expected.to_owned());
         complaint
     }
 
     pub(super) fn unknown(what: &str, name: &str, known: &[&str]) -> Self {
         let mut complaint = Complaint::new(format!("there is no such {what}"));
-        complaint.found = Some(name.to_owned());
-        complaint.expected = Some(match known {
+        complaint.0.found = Some(name.to_owned());
+        complaint.0.expected = Some(match known {
             [] => "none here".to_owned(),
             [one] => (*one).to_owned(),
             _ => format!("one of {}", known.join(", ")),
         });
-        complaint.remedy = did_you_mean(name, known.iter().copied());
+        complaint.0.remedy = did_you_mean(name, known.iter().copied());
         complaint
     }
 
     /// Says where, unless something nearer to the cause has said so.
     pub(super) fn at(mut self, key_path: &str, origin: Origin) -> Self {
-        self.place.get_or_insert_with(|| (key_path.to_owned(), origin));
+        self.0.place.get_or_insert_with(|| (key_path.to_owned(), origin));
         self
     }
 
     fn expecting(mut self, expected: &dyn Expected) -> Self {
         // The standard visitors name Rust types, which mean nothing to an author.
         let text = expected.to_string();
-        self.expected = Some(match text.as_str() {
+        self.0.expected = Some(match text.as_str() {
             "u16" | "u32" | "u64" => "a whole number of at least 0".to_owned(),
             "f64" => "a number".to_owned(),
             "a boolean" => "true or false".to_owned(),
@@ -78,7 +82,7 @@ fn describe(unexpected: Unexpected<'_>) -> String {
 
 impl Display for Complaint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.what)
+        f.write_str(&self.0.what)
     }
 }
 
@@ -91,19 +95,19 @@ impl de::Error for Complaint {
 
     fn invalid_type(unexpected: Unexpected<'_>, expected: &dyn Expected) -> Self {
         let mut complaint = Complaint::new("a value is of the wrong kind").expecting(expected);
-        complaint.found = Some(describe(unexpected));
+        complaint.0.found = Some(describe(unexpected));
         complaint
     }
 
     fn invalid_value(unexpected: Unexpected<'_>, expected: &dyn Expected) -> Self {
         let mut complaint = Complaint::new("a value cannot be used").expecting(expected);
-        complaint.found = Some(describe(unexpected));
+        complaint.0.found = Some(describe(unexpected));
         complaint
     }
 
     fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
         let mut complaint = Complaint::new("a list has the wrong length").expecting(expected);
-        complaint.found = Some(length.to_string());
+        complaint.0.found = Some(length.to_string());
         complaint
     }
 
@@ -113,7 +117,7 @@ impl de::Error for Complaint {
 
     fn missing_field(field: &'static str) -> Self {
         let mut complaint = Complaint::new("a key is missing");
-        complaint.expected = Some(format!("the key {field}"));
+        complaint.0.expected = Some(format!("the key {field}"));
         complaint
     }
 }

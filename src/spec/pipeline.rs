@@ -202,7 +202,7 @@ impl TryFrom<u32> for Bits {
         match bits {
             8 => Ok(Bits::Eight),
             16 => Ok(Bits::Sixteen),
-            other => Err(format!("{other}, expected 8 or 16")),
+            other => Err(format!("bits per channel are 8 or 16, not {other}")),
         }
     }
 }

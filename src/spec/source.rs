@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
-use super::complaint::Complaint;
+use super::complaint::{Complaint, Parts};
 use super::overrides;
 use super::tree::{self, Node, Origin, Value};
 use super::typed;
@@ -89,7 +89,7 @@ impl Source {
     }
 
     fn complain(&self, complaint: Complaint) -> Error {
-        let Complaint { what, found, expected, remedy, place } = complaint;
+        let Parts { what, found, expected, remedy, place } = *complaint.0;
         let mut error = Error::new(Fault::Spec, what);
         let (key_path, origin) = place.unwrap_or((String::new(), self.tree.origin));
         if !key_path.is_empty() {

@@ -66,7 +66,7 @@ impl<'a> Typed<'a> {
 
 fn no_value() -> Complaint {
     let mut complaint = Complaint::new("a key has no value");
-    complaint.remedy =
+    complaint.0.remedy =
         Some("leave the key out, or give it a value; a colour goes in quotes, because # starts a comment".to_owned());
     complaint
 }

@@ -14,7 +14,7 @@ use super::shade::Shader;
 use super::splits::Splits;
 
 /// A piece is not halved below this fraction of a segment; what it then costs is charged to the bound.
-const SMALLEST_PIECE: f64 = 1.0 / (1u64 << 30) as f64;
+const SMALLEST_PIECE: f64 = 1.0 / 65536.0;
 
 /// What a cut at a jump that rounding has misplaced may cost, over the tolerance, before the ray is traced in f64.
 const OF_A_CUT: f64 = 0.01;
