@@ -60,7 +60,7 @@ fn a_layer_of_no_strength_is_left_out() {
     let with = format!("{TWO_D}    opacity_scale: 0\n  - preset: bone\n");
     let without = "transfer_function:\n  - preset: bone\n";
     assert_eq!(plan(&with).scene, plan(without).scene);
-    assert_eq!(reads(&with), (false, false));
+    assert_eq!(reads(&with), reads(without), "what a layer of no strength would read is not read");
     let omitted = plan(&with).not_computed;
     assert!(omitted.iter().any(|o| o.what == "layer" && o.why.contains("layer 1")), "found {omitted:?}");
 }
