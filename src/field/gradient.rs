@@ -16,11 +16,18 @@ impl<V: Voxel> Trilinear<'_, V> {
     #[inline(always)]
     fn gradient_inside(&self, cell: &Cell) -> [f32; 3] {
         let base = self.base(cell);
-        let corners = self.corner_offsets().map(|offset| base + offset);
-        self.strides.map(|stride| {
-            let twice = corners.map(|at| self.voxels[at + stride].minus(self.voxels[at - stride]));
-            0.5 * interpolate(twice, cell.fraction)
-        })
+        let offsets = self.corner_offsets();
+        let mut gradient = [0.0; 3];
+        for (component, stride) in gradient.iter_mut().zip(self.strides) {
+            // Loops rather than `map`: the compiler does not inline nested maps over arrays.
+            let mut twice = [0.0; 8];
+            for (difference, offset) in twice.iter_mut().zip(offsets) {
+                let at = base + offset;
+                *difference = self.voxels[at + stride].minus(self.voxels[at - stride]);
+            }
+            *component = 0.5 * interpolate(twice, cell.fraction);
+        }
+        gradient
     }
 
     #[cold]
