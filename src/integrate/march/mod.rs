@@ -46,10 +46,10 @@ pub(super) fn check(settings: &March, scene: &Scene, grid: &Grid) -> Result<()> 
             .found(least.to_string())
             .expected("a number from 0 (never) to below 1"));
     }
+    // The longest chord of a parallelepiped is one of its four diagonals.
     let corners = grid.corners_mm();
-    let longest_mm = corners.iter().map(|c| c.distance(corners[7]).max(c.distance(corners[0]))).fold(0.0, f64::max);
-    // The four diagonals of a sheared box differ by at most twice the longest edge sum; an upper bound is enough here.
-    let samples = 2.0 * longest_mm / step;
+    let longest_mm = (0..4).map(|c| corners[c].distance(corners[7 - c])).fold(0.0, f64::max);
+    let samples = longest_mm / step;
     if samples > MOST_SAMPLES_PER_RAY {
         return Err(Error::new(Fault::Limit, "the step is too small for the volume")
             .element("integrate.march.step")
