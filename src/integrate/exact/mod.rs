@@ -53,8 +53,8 @@ pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rende
         |(), column, row| {
             let traced = tracer.trace(&frame.scene.camera.pixel_ray(column, row))?;
             Some(Radiance {
-                color: traced.radiance.map(|x| x as f32),
-                transmittance: traced.transmittance as f32,
+                color: traced.radiance,
+                transmittance: traced.transmittance,
                 samples: traced.pieces,
                 error_bound: traced.bound,
             })
