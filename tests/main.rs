@@ -9,6 +9,7 @@ mod house;
 mod image;
 mod layering;
 mod march;
+mod models;
 mod nrrd;
 mod oracle;
 mod phantom;

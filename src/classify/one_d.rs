@@ -1,7 +1,7 @@
 //! A transfer function of the value alone.
 
 use super::{Axis, Classifier, Rgbs, rgbs};
-use crate::math::Real;
+use crate::math::{Real, each};
 use crate::transfer::{Side, TransferFunction};
 use crate::volume::Rescale;
 
@@ -32,10 +32,7 @@ impl<R: Real> OneD<R> {
                 let at = |v, side| rgbs(transfer_function.evaluate_side(v, side, 0.0, Side::Right));
                 let (low, high) = (at(e.low, e.low_side), at(e.high, e.high_side));
                 let width = rescale.stored(e.high) - rescale.stored(e.low);
-                Linear {
-                    low: low.map(R::from_f64),
-                    slope: std::array::from_fn(|c| R::from_f64((high[c] - low[c]) / width)),
-                }
+                Linear { low: low.map(R::from_f64), slope: each(|c| R::from_f64((high[c] - low[c]) / width)) }
             })
             .collect();
         axis.mark_steep(|k| {
@@ -86,7 +83,7 @@ impl<R: Real> Classifier<R> for OneD<R> {
         let i = self.axis.interval(x);
         let Linear { low, slope } = self.pieces[i];
         let dx = x - self.axis.knots()[i];
-        std::array::from_fn(|c| slope[c].mul_plus(dx, low[c]))
+        each(|c| slope[c].mul_plus(dx, low[c]))
     }
 
     #[inline(always)]

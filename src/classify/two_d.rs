@@ -2,7 +2,7 @@
 
 use super::axis::Ends;
 use super::{Axis, Classifier, Rgbs, rgbs};
-use crate::math::Real;
+use crate::math::{Real, each};
 use crate::transfer::{Optics, Side, TransferFunction};
 use crate::volume::Rescale;
 
@@ -51,7 +51,7 @@ impl<R: Real> TwoD<R> {
                 let c01 = at(v.low, v.low_side, g.high, g.high_side);
                 let c11 = at(v.high, v.high_side, g.high, g.high_side);
                 let (dv, dg) = (rescale.stored(v.high) - rescale.stored(v.low), g.high - g.low);
-                let each = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|c| R::from_f64(f(c)));
+                let each = |f: &dyn Fn(usize) -> f64| each(|c| R::from_f64(f(c)));
                 patches.push(Bilinear {
                     low: each(&|c| c00[c]),
                     by_value: each(&|c| (c10[c] - c00[c]) / dv),
@@ -134,7 +134,7 @@ impl<R: Real> Classifier<R> for TwoD<R> {
         let (i, j) = (self.values.interval(v), self.gradients.interval(g));
         let p = self.patch(i, j);
         let (dv, dg) = (v - self.values.knots()[i], g - self.gradients.knots()[j]);
-        std::array::from_fn(|c| {
+        each(|c| {
             let across = p.by_value[c].mul_plus(dv, p.low[c]);
             p.by_both[c].mul_plus(dv, p.by_gradient[c]).mul_plus(dg, across)
         })

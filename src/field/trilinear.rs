@@ -60,7 +60,11 @@ impl<'v, V: Voxel> Trilinear<'v, V> {
     #[inline(always)]
     pub fn corners(&self, cell: &Cell) -> [f32; 8] {
         let base = self.base(cell);
-        self.corner_offsets().map(|offset| self.voxels[base + offset].to_f32())
+        let mut corners = [0.0; 8];
+        for (corner, offset) in corners.iter_mut().zip(self.corner_offsets()) {
+            *corner = self.voxels[base + offset].to_f32();
+        }
+        corners
     }
 
     /// The interpolated stored sample.

@@ -63,7 +63,7 @@ pub type Progress<'a> = &'a (dyn Fn(usize) + Sync);
 /// Renders a scene.
 ///
 /// # Errors
-/// `Fault::Spec` for settings that are no usable numbers, `Fault::Limit` for a step so small that a picture would take for
+/// `Fault::Unsupported` for marching what is not light, `Fault::Spec` for settings that are no usable numbers, `Fault::Limit` for a step so small that a picture would take for
 /// ever.
 pub fn render(volume: &Volume, scene: &Scene, method: &Method, progress: Progress<'_>) -> Result<Rendered> {
     render_scheduled(volume, scene, method, Schedule::default(), progress)
@@ -83,7 +83,7 @@ pub fn render_scheduled(
     let frame = Frame { volume, scene, schedule, progress };
     match method {
         Method::March(settings) => {
-            march::check(settings, volume.grid())?;
+            march::check(settings, scene, volume.grid())?;
             select::march(&frame, settings)
         }
         Method::Exact(settings) => exact::render(&frame, settings),

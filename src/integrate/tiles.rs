@@ -16,9 +16,9 @@ const TILE: usize = 16;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Radiance {
     /// Linear RGB.
-    pub(super) color: [f32; 3],
+    pub(super) color: [f64; 3],
     /// What is let through from behind.
-    pub(super) transmittance: f32,
+    pub(super) transmittance: f64,
     /// Places where the transfer function was evaluated.
     pub(super) samples: u64,
     /// Bound on the error of a channel; 0 where the method proves none.
@@ -105,14 +105,13 @@ fn cut(pixels: &mut [[f32; 4]], width: usize) -> Vec<Tile<'_>> {
 
 /// Composites over the background: premultiplied colour, and alpha 1 over a colour.
 fn over(light: Option<Radiance>, background: Background) -> [f32; 4] {
-    let ([r, g, b], t) = light.map_or(([0.0; 3], 1.0), |l| (l.color, l.transmittance));
-    match background {
-        Background::Transparent => [r, g, b, 1.0 - t],
-        Background::Color(behind) => {
-            let [br, bg, bb] = behind.map(|c| c as f32);
-            [r + t * br, g + t * bg, b + t * bb, 1.0]
-        }
-    }
+    let (color, t) = light.map_or(([0.0; 3], 1.0), |l| (l.color, l.transmittance));
+    let (behind, alpha) = match background {
+        Background::Transparent => ([0.0; 3], 1.0 - t),
+        Background::Color(behind) => (behind, 1.0),
+    };
+    let [r, g, b] = std::array::from_fn(|c| (color[c] + t * behind[c]) as f32);
+    [r, g, b, alpha as f32]
 }
 
 /// Fisher and Yates' shuffle.

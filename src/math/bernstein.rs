@@ -4,7 +4,7 @@
 //! within the range of its coefficients; its mean over `[0, 1]` is the mean of its coefficients; and every operation here is
 //! a convex combination, so rounding never exceeds a few units in the last place of the largest coefficient.
 
-use super::Real;
+use super::{Real, each};
 
 /// A cubic in Bernstein form.
 pub type Cubic<R> = [R; 4];
@@ -105,7 +105,7 @@ pub fn elevate<R: Real>(a: &Cubic<R>) -> [R; 7] {
 #[inline(always)]
 pub fn times_linear<R: Real, const N: usize, const M: usize>(b: &[R; N], low: R, high: R) -> [R; M] {
     const { assert!(M == N + 1, "the product has one more coefficient") };
-    std::array::from_fn(|k| {
+    each(|k| {
         let t = R::from_f64(k as f64 / N as f64);
         let from_high = if k > 0 { t * high * b[k - 1] } else { R::ZERO };
         let from_low = if k < N { (R::ONE - t) * low * b[k] } else { R::ZERO };

@@ -2,7 +2,9 @@
 
 mod absorb;
 pub mod bernstein;
+mod each;
 mod real;
 
 pub use absorb::{absorbed_f32, mean_transmittance_f32};
+pub use each::each;
 pub use real::Real;

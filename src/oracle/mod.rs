@@ -21,6 +21,7 @@ mod collocation;
 mod fields;
 mod light;
 mod lit_piece;
+mod models;
 mod panel;
 mod patches;
 mod path;
@@ -33,7 +34,7 @@ use rayon::prelude::*;
 
 pub use light::Segment;
 
-use crate::scene::{Background, Ray, Scene};
+use crate::scene::{Background, Model, Ray, Scene};
 use crate::volume::Volume;
 use collocation::{Collocation, Stretch};
 use fields::Fields;
@@ -71,19 +72,25 @@ impl<'a> Oracle<'a> {
 
     /// What the ray sees of the volume, without the background: premultiplied linear RGBA.
     pub fn radiance(&self, ray: &Ray) -> [f64; 4] {
-        self.segment(ray, 0.0, f64::INFINITY).rgba()
+        match &self.scene.model {
+            Model::Light => self.segment(ray, 0.0, f64::INFINITY).rgba(),
+            Model::Value(model) => models::number(self, model, ray).map_or([0.0; 4], |v| {
+                let light = model.light(v);
+                [light, light, light, 1.0]
+            }),
+            Model::Surfaces(surfaces) => models::surfaces(self, surfaces, ray),
+        }
     }
 
     /// The pixel at a column and row from the top left, with the background: premultiplied linear RGBA.
     pub fn pixel(&self, column: usize, row: usize) -> [f64; 4] {
         let ray = self.scene.camera.pixel_ray(column, row);
-        let segment = self.segment(&ray, 0.0, f64::INFINITY);
+        let [r, g, b, alpha] = self.radiance(&ray);
         match self.scene.background {
-            Background::Transparent => segment.rgba(),
-            Background::Color(behind) => {
-                let t = segment.transmittance();
-                let [r, g, b] = std::array::from_fn(|c| segment.rgb[c] + t * behind[c]);
-                [r, g, b, 1.0]
+            Background::Transparent => [r, g, b, alpha],
+            Background::Color([br, bg, bb]) => {
+                let t = 1.0 - alpha;
+                [r + t * br, g + t * bg, b + t * bb, 1.0]
             }
         }
     }

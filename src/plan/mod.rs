@@ -10,6 +10,7 @@ mod integrator;
 mod layers;
 mod light;
 mod method;
+mod model;
 mod output;
 mod stages;
 mod volume_info;
@@ -67,6 +68,7 @@ impl Plan {
         let layers = layers::resolve(spec, volume, gradient_range[1], light.emission_scale)?;
         let terms = layers.iter().flat_map(|layer| layer.terms.iter().cloned()).collect();
         let scene = Scene {
+            model: model::resolve(spec),
             transfer_function: TransferFunction::new(window, gradient_range[1], terms)?,
             shading: light.shading,
             camera: camera::resolve(spec, &volume.grid)?,
@@ -76,7 +78,7 @@ impl Plan {
         let demand = Demand {
             gradient: scene.shading.is_some(),
             gradient_magnitude: scene.transfer_function.reads_gradient(),
-            macrocells: method != Method::Reference,
+            macrocells: matches!(method, Method::March(_)),
         };
         let mut plan = Plan {
             scene,

@@ -1,6 +1,6 @@
 //! What is computed, in order, and what is not, and why.
 
-use crate::scene::Scene;
+use crate::scene::{Model, Scene};
 use crate::spec::Spec;
 use crate::volume::Grid;
 
@@ -34,8 +34,10 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     let mut stages =
         vec![Stage { name: "volume", what: describe_volume(volume), bytes: voxels * volume.storage.bytes() }];
     let mut field = |what: &str, bytes| stages.push(Stage { name: "field", what: what.to_owned(), bytes });
-    if plan.demand.gradient_magnitude {
+    if plan.demand.gradient_magnitude && plan.demand.macrocells {
         field("gradient magnitude at the voxels, by central differences, f32", 4 * voxels);
+    } else if plan.demand.gradient_magnitude {
+        field("gradient magnitude at corners of lit cells, by central differences, not stored", 0);
     }
     if plan.demand.gradient {
         field("gradient at samples, by central differences, not stored", 0);
@@ -44,7 +46,9 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         let channels = if plan.demand.gradient_magnitude { 2 } else { 1 };
         field("macrocells: value ranges of blocks of 8 x 8 x 8 cells", 8 * channels * block_count(&volume.grid));
     }
-    stages.push(classify(plan));
+    if plan.scene.model == Model::Light {
+        stages.push(classify(plan));
+    }
     let pixels: u64 = plan.scene.camera.size().iter().map(|&n| n as u64).product();
     stages.push(Stage {
         name: "integrate",
@@ -107,6 +111,11 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
         Method::March(_) => "march",
         Method::Reference => return "reference in f64".to_owned(),
     };
+    match scene.model {
+        Model::Light => {}
+        Model::Value(_) => return format!("{method}/{}/value/f64", volume.storage.name()),
+        Model::Surfaces(_) => return format!("{method}/{}/surfaces/f64", volume.storage.name()),
+    }
     let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
     let shader = if scene.shading.is_some() { "lit" } else { "unlit" };
     format!("{method}/{}/{classifier}/{shader}", volume.storage.name())
@@ -150,6 +159,11 @@ fn describe_method(method: &Method) -> String {
 pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     let mut omissions = Vec::new();
     let mut omit = |what, why: &str| omissions.push(Omission { what, why: why.to_owned() });
+    match plan.scene.model {
+        Model::Light => {}
+        Model::Value(_) => omit("classification", "effects.project shows a number of the values, not light"),
+        Model::Surfaces(_) => omit("classification", "effects.surfaces shows surfaces, not light"),
+    }
     if !plan.demand.gradient_magnitude {
         omit("gradient magnitude", "no layer depends on it within the range of gradient magnitudes");
     }
@@ -164,7 +178,11 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
         );
     }
     if !plan.demand.macrocells {
-        omit("macrocells", "the reference skips nothing");
+        let why = match plan.method {
+            Method::Reference => "the reference skips nothing",
+            _ => "the exact integrator skips cell by cell, by the values at their corners",
+        };
+        omit("macrocells", why);
     }
     if let Method::March(march) = &plan.method {
         if march.jitter.is_none() {

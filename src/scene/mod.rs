@@ -7,9 +7,11 @@
 //! [transfer function](crate::transfer); shading multiplies `q`. Colour is linear and premultiplied.
 
 mod camera;
+mod model;
 mod shading;
 
 pub use camera::{Camera, Projection, Ray};
+pub use model::{Model, Surface, ValueModel, ValueOf};
 pub use shading::{Light, Shading};
 
 use crate::transfer::TransferFunction;
@@ -17,6 +19,8 @@ use crate::transfer::TransferFunction;
 /// What is pictured: resolved definitions, no options left open.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
+    /// What a ray shows.
+    pub model: Model,
     /// What absorbs and emits.
     pub transfer_function: TransferFunction,
     /// Shading by the gradient; `None` renders emission and absorption alone, and no gradient is read for it.

@@ -9,8 +9,18 @@ use super::suggest::did_you_mean;
 use crate::error::{Error, Result};
 
 /// The presets built in: name and text of each file of the folder `presets`, so that the binary works alone.
-pub const BUILT_IN_PRESETS: &[(&str, &str)] =
-    &[("bone", include_str!("../../presets/bone.yaml")), ("skin", include_str!("../../presets/skin.yaml"))];
+pub const BUILT_IN_PRESETS: &[(&str, &str)] = &[
+    ("airways", include_str!("../../presets/airways.yaml")),
+    ("bone", include_str!("../../presets/bone.yaml")),
+    ("fat", include_str!("../../presets/fat.yaml")),
+    ("lung", include_str!("../../presets/lung.yaml")),
+    ("metal", include_str!("../../presets/metal.yaml")),
+    ("muscle", include_str!("../../presets/muscle.yaml")),
+    ("skin", include_str!("../../presets/skin.yaml")),
+    ("soft-tissue", include_str!("../../presets/soft-tissue.yaml")),
+    ("tooth", include_str!("../../presets/tooth.yaml")),
+    ("vessels", include_str!("../../presets/vessels.yaml")),
+];
 
 /// A preset with where it comes from.
 #[derive(Debug, Clone, PartialEq)]

@@ -27,7 +27,7 @@ mod widget;
 
 pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
-pub use effects::{EffectsSpec, LightSpec, ShadingSpec};
+pub use effects::{EffectsSpec, LightSpec, ProjectSpec, ProjectionOf, ShadingSpec, SurfaceSpec};
 pub use integrate::{
     ColorsName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName,
     RuleName,

@@ -23,8 +23,9 @@ pub struct Pipeline {
     /// Range of gradient magnitudes that the transfer function covers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gradient: Option<GradientSpec>,
-    /// What shows: the sum of these layers.
+    /// What shows: the sum of these layers. At least one, unless an effect shows something else than light.
     #[schemars(length(min = 1))]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transfer_function: Vec<LayerSpec>,
     /// Effects beyond emission and absorption; none by default.
     #[serde(skip_serializing_if = "Option::is_none")]

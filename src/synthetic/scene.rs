@@ -113,3 +113,36 @@ impl Tissue {
         Some((tissue, covers))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::anatomy;
+    use super::super::noise::bell;
+    use super::*;
+
+    #[test]
+    fn a_scene_cut_down_to_a_ball_has_the_same_values_there() {
+        let head = anatomy::head(1.2);
+        let mut tissues_left = 0;
+        for index in 0..300 {
+            let spread = |stream: u64| 45.0 * bell(stream, index);
+            let ball = Ball { center: Vec3::new(spread(1), spread(2) - 10.0, spread(3)), radius_mm: 8.0 };
+            let near = head.near(ball);
+            tissues_left += near.tissues.len();
+            for step in 0..10_u64 {
+                let direction =
+                    Vec3::new(bell(4, index * 10 + step), bell(5, index), bell(6, step)).normalize_or_zero();
+                let p = ball.center + ball.radius_mm * (step as f32 / 10.0) * direction;
+                let (expected, found) = (head.hu(p), near.hu(p));
+                // Rounding differs where a solid is the whole of space in the ball.
+                assert!((expected - found).abs() < 0.1, "at {p}: found {found} HU, expected {expected}");
+            }
+        }
+        let average = tissues_left as f32 / 300.0;
+        assert!(
+            average < 0.2 * head.tissues.len() as f32,
+            "tissues per ball: found {average} of {}",
+            head.tissues.len()
+        );
+    }
+}

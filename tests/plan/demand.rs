@@ -60,13 +60,17 @@ fn a_layer_of_no_strength_is_left_out() {
     let with = format!("{TWO_D}    opacity_scale: 0\n  - preset: bone\n");
     let without = "transfer_function:\n  - preset: bone\n";
     assert_eq!(plan(&with).scene, plan(without).scene);
-    assert_eq!(reads(&with), (false, false));
+    assert_eq!(reads(&with), reads(without), "what a layer of no strength would read is not read");
     let omitted = plan(&with).not_computed;
     assert!(omitted.iter().any(|o| o.what == "layer" && o.why.contains("layer 1")), "found {omitted:?}");
 }
 
 #[test]
-fn the_reference_skips_nothing() {
-    assert!(plan("integrate: exact\n").demand.macrocells);
-    assert!(!plan("integrate: reference\n").demand.macrocells);
+fn only_marching_reads_macrocells() {
+    assert!(plan("integrate: { march: { step_voxels: 1 } }\n").demand.macrocells);
+    for other in ["exact", "reference"] {
+        let plan = plan(&format!("integrate: {other}\n"));
+        assert!(!plan.demand.macrocells, "{other} skips cell by cell, or not at all");
+        assert!(plan.not_computed.iter().any(|o| o.what == "macrocells"), "{other} says so");
+    }
 }

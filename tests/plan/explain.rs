@@ -8,11 +8,10 @@ use super::plan;
 fn a_plain_plan() {
     insta::assert_snapshot!(explain(&plan("image: { size: [200, 100] }\n")), @r"
     volume     64 x 48 x 33 voxels of 1.000 x 2.000 x 3.000 mm, i16, values -1000 to 1800 HU   202.8 kB
-    field      macrocells: value ranges of blocks of 8 x 8 x 8 cells                             1.5 kB
     classify   1D transfer function of 1 layer, 4 knots, values -1024 to 3071                      96 B
     integrate  exact/i16/tf1d/unlit: each channel of a pixel within 3.922e-3                   320.0 kB
     image      PNG, 8 bits, sRGB, straight alpha                                                80.0 kB
-    memory     604.4 kB
+    memory     602.8 kB
 
     layers     layer 1
     light      none: emission and absorption alone
@@ -23,6 +22,7 @@ fn a_plain_plan() {
     not computed
       gradient magnitude    no layer depends on it within the range of gradient magnitudes
       gradient              no effect asks for shading
+      macrocells            the exact integrator skips cell by cell, by the values at their corners
       certificate           certify asks for no pixels
     ");
 }
@@ -48,7 +48,7 @@ certify: 500
     field      gradient magnitude at the voxels, by central differences, f32                                     405.5 kB
     field      gradient at samples, by central differences, not stored                                                  -
     field      macrocells: value ranges of blocks of 8 x 8 x 8 cells                                               3.1 kB
-    classify   2D transfer function of 2 layers, 23 x 11 knots, values -1024 to 1500, gradients to 1500 per mm    14.1 kB
+    classify   2D transfer function of 2 layers, 23 x 12 knots, values -1024 to 1500, gradients to 1500 per mm    15.5 kB
     integrate  march/i16/tf2d/lit: steps of 1.0000 mm, midpoint samples, front to back, white jitter of seed 1   320.0 kB
     image      PNG, 16 bits, sRGB, straight alpha                                                                160.0 kB
     oracle     500 random pixels again in f64                                                                           -

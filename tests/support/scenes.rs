@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "used as modules need it")]
 
 use glam::{DAffine3, DMat3, DVec3};
-use pellucid::scene::{Background, Camera, Light, Projection, Ray, Scene, Shading};
+use pellucid::scene::{Background, Camera, Light, Model, Projection, Ray, Scene, Shading};
 use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
 use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
 
@@ -84,7 +84,7 @@ pub(crate) fn function(terms: Vec<Term>) -> TransferFunction {
 pub(crate) fn scene(transfer_function: TransferFunction) -> Scene {
     let projection = Projection::Parallel { height_mm: 1.0 };
     let camera = Camera::look_at(DVec3::NEG_Y, DVec3::ZERO, DVec3::Z, projection, [1, 1]).expect("a valid camera");
-    Scene { transfer_function, shading: None, camera, background: Background::Transparent }
+    Scene { model: Model::Light, transfer_function, shading: None, camera, background: Background::Transparent }
 }
 
 /// The same scene, shaded.
@@ -188,6 +188,7 @@ pub(crate) fn scene_around(volume: &Volume, terms: Vec<Term>, shading: Option<Sh
     let projection = Projection::Perspective { fov_degrees: 28.0 };
     let camera = Camera::look_at(eye, center, DVec3::Z, projection, size).expect("a valid camera");
     Scene {
+        model: Model::Light,
         transfer_function: TransferFunction::new([-1024.0, 3071.0], 1500.0, terms).expect("a valid transfer function"),
         shading,
         camera,

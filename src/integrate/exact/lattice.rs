@@ -3,8 +3,8 @@
 use glam::DMat3;
 
 use crate::field::Voxel;
-use crate::math::Real;
 use crate::math::bernstein::{Cubic, trilinear_along};
+use crate::math::{Real, each};
 use crate::volume::{Rescale, Volume};
 
 use super::cells::Segment;
@@ -25,7 +25,7 @@ impl<'a, V: Voxel> Lattice<'a, V> {
         let dims = volume.grid().dims();
         let [nx, ny, _] = dims;
         let strides = [1, nx, nx * ny];
-        let steps = std::array::from_fn(|a| if dims[a] == 1 { 0 } else { strides[a] });
+        let steps = each(|a| if dims[a] == 1 { 0 } else { strides[a] });
         Lattice { samples, dims, steps, to_value_per_mm: volume.grid().gradient_to_per_mm() * slope }
     }
 
@@ -35,7 +35,7 @@ impl<'a, V: Voxel> Lattice<'a, V> {
         let [nx, ny, _] = self.dims;
         let base = i + nx * (j + ny * k);
         let [sx, sy, sz] = self.steps;
-        std::array::from_fn(|c| real(self.samples[base + (c & 1) * sx + (c >> 1 & 1) * sy + (c >> 2) * sz]))
+        each(|c| real(self.samples[base + (c & 1) * sx + (c >> 1 & 1) * sy + (c >> 2) * sz]))
     }
 
     /// Difference per index step along an axis at a voxel: central, one-sided at the border, 0 along an axis of one voxel.
@@ -61,8 +61,8 @@ impl<'a, V: Voxel> Lattice<'a, V> {
         let mut result = [[R::ZERO; 8]; 3];
         for c in 0..8 {
             let offset = [c & 1, c >> 1 & 1, c >> 2];
-            let voxel: [usize; 3] = std::array::from_fn(|a| (cell[a] + offset[a]).min(self.dims[a] - 1));
-            let per_index: [R; 3] = std::array::from_fn(|axis| self.difference(voxel, axis));
+            let voxel: [usize; 3] = each(|a| (cell[a] + offset[a]).min(self.dims[a] - 1));
+            let per_index: [R; 3] = each(|axis| self.difference(voxel, axis));
             for (row, component) in result.iter_mut().enumerate() {
                 component[c] = (0..3).fold(R::ZERO, |s, col| R::from_f64(m[col][row]).mul_plus(per_index[col], s));
             }
@@ -75,7 +75,7 @@ impl<'a, V: Voxel> Lattice<'a, V> {
 #[inline]
 pub(super) fn magnitudes<R: Real>(gradients: &[[R; 8]; 3]) -> [R; 8] {
     let [x, y, z] = gradients;
-    std::array::from_fn(|c| (x[c] * x[c] + y[c] * y[c] + z[c] * z[c]).sqrt())
+    each(|c| (x[c] * x[c] + y[c] * y[c] + z[c] * z[c]).sqrt())
 }
 
 /// The trilinear interpolant of corner values along a segment.

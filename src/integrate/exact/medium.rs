@@ -1,8 +1,8 @@
 //! A transfer function along a segment: which pieces there are, and the polynomials on each.
 
 use crate::classify::{Axis, Bilinear, Classifier, Linear, OneD, TwoD};
-use crate::math::Real;
 use crate::math::bernstein::{Cubic, elevate, product, range, restrict};
+use crate::math::{Real, each};
 
 use super::cells::Segment;
 use super::lattice::{along, magnitudes};
@@ -123,9 +123,7 @@ impl<R: Real> Medium<R> for TwoD<R> {
         let Bilinear { low, by_value, by_gradient, by_both } = self.patch(i, j);
         let (v, g, vg) = (elevate(&dv), elevate(&dg), product(&dv, &dg));
         let channel = |c: usize| -> [R; 7] {
-            std::array::from_fn(|k| {
-                by_both[c].mul_plus(vg[k], by_gradient[c].mul_plus(g[k], by_value[c].mul_plus(v[k], low[c])))
-            })
+            each(|k| by_both[c].mul_plus(vg[k], by_gradient[c].mul_plus(g[k], by_value[c].mul_plus(v[k], low[c]))))
         };
         let optics = Optics { emission: [channel(0), channel(1), channel(2)], extinction: channel(3) };
         Some(if S::LIT {

@@ -9,6 +9,7 @@ mod budget;
 mod cells;
 mod lattice;
 mod medium;
+mod models;
 mod piece;
 mod ray;
 mod shade;
@@ -20,7 +21,7 @@ use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::plan::Exact;
-use crate::scene::{Ray, Scene, Shading};
+use crate::scene::{Model, Ray, Scene, Shading};
 use crate::volume::{Samples, Volume};
 
 use super::tiles::{self, Radiance};
@@ -103,6 +104,19 @@ fn for_samples<'a, V: Voxel>(
     let lattice = Lattice::new(volume, samples);
     let frame = Frame { grid: volume.grid(), lattice, tolerance, brightest: Brightest::of(scene) };
     let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
+    match &scene.model {
+        Model::Light => {}
+        Model::Value(model) => {
+            let (grid, rescale) = (volume.grid(), volume.rescale());
+            let trace = move |ray: &Ray| models::show_value(&lattice, grid, rescale, model, ray);
+            return Box::new(Direct { trace, name: format!("exact/{}/value/f64", V::NAME) });
+        }
+        Model::Surfaces(surfaces) => {
+            let (grid, rescale, shading) = (volume.grid(), volume.rescale(), scene.shading.as_ref());
+            let trace = move |ray: &Ray| Some(models::show_surfaces(&lattice, grid, rescale, surfaces, shading, ray));
+            return Box::new(Direct { trace, name: format!("exact/{}/surfaces/f64", V::NAME) });
+        }
+    }
     let name = |classifier: &str| {
         let lit = if shading.is_some() { "lit" } else { "unlit" };
         let real = if precision == Precision::Single { "f32" } else { "f64" };
@@ -116,6 +130,22 @@ fn for_samples<'a, V: Voxel>(
             Box::new(Kernel { frame, shading, double, single, precision, name: name("tf2d") })
         }
         _ => unreachable!("both precisions bake the same transfer function"),
+    }
+}
+
+/// A kernel that needs nothing but its ray.
+struct Direct<F> {
+    trace: F,
+    name: String,
+}
+
+impl<F: Fn(&Ray) -> Option<Traced> + Sync> Tracer for Direct<F> {
+    fn trace(&self, ray: &Ray) -> Option<Traced> {
+        (self.trace)(ray)
+    }
+
+    fn kernel(&self) -> &str {
+        &self.name
     }
 }
 

@@ -20,8 +20,8 @@
 //! `ε`. To allow emission without extinction everything is multiplied by `τ`: with `m = A/τ` (1 at `τ = 0`) and `G = τH`,
 //! the integral is `m (Q + G_mid) ± m G_rad`.
 
-use crate::math::Real;
 use crate::math::bernstein::{sum, times_linear};
+use crate::math::{Real, each};
 
 /// Emission and extinction along a piece: polynomials in Bernstein form with `N` coefficients, 1/mm.
 #[derive(Debug, Clone, Copy)]
@@ -65,7 +65,7 @@ impl<R: Real, const N: usize> Optics<R, N> {
         let m = depth.mean_transmittance();
         let scale = length_mm * length_mm / n;
         let mut error = R::ZERO;
-        let radiance = std::array::from_fn(|c| {
+        let radiance = each(|c| {
             let q = &self.emission[c];
             let mean = sum(q) / n;
             // G at the coefficients between its ends, where it is 0.
@@ -87,10 +87,10 @@ impl<R: Real, const N: usize> Optics<R, N> {
     pub(super) fn shaded<const M: usize>(&self, factors: &LinearFactors<R>) -> Optics<R, M> {
         let [front, back] = &factors.reflected;
         let [shine_front, shine_back] = &factors.highlight;
-        let emission = std::array::from_fn(|c| {
+        let emission = each(|c| {
             let reflected: [R; M] = times_linear(&self.emission[c], front[c], back[c]);
             let highlight: [R; M] = times_linear(&self.extinction, shine_front[c], shine_back[c]);
-            std::array::from_fn(|k| reflected[k] + highlight[k])
+            each(|k| reflected[k] + highlight[k])
         });
         Optics { emission, extinction: times_linear(&self.extinction, R::ONE, R::ONE) }
     }

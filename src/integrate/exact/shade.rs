@@ -15,8 +15,8 @@
 
 use glam::DVec3;
 
-use crate::math::Real;
 use crate::math::bernstein::{Cubic, restrict, value};
+use crate::math::{Real, each};
 use crate::scene::Shading;
 
 use super::piece::LinearFactors;
@@ -130,7 +130,7 @@ fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
 
 #[inline(always)]
 fn along_light<R: Real>(g: &[Cubic<R>; 3], l: &[R; 3]) -> Cubic<R> {
-    std::array::from_fn(|k| g[0][k] * l[0] + g[1][k] * l[1] + g[2][k] * l[2])
+    each(|k| g[0][k] * l[0] + g[1][k] * l[1] + g[2][k] * l[2])
 }
 
 impl<R: Real> Shader<R> for Lit<R> {
@@ -149,7 +149,7 @@ impl<R: Real> Shader<R> for Lit<R> {
     }
 
     fn factors(&self, g: &[Cubic<R>; 3], from: R, to: R) -> LinearFactors<R> {
-        let g: [Cubic<R>; 3] = std::array::from_fn(|a| restrict(&g[a], from, to));
+        let g: [Cubic<R>; 3] = each(|a| restrict(&g[a], from, to));
         let at = |k: usize| [g[0][k], g[1][k], g[2][k]];
         let bounds = Variation::of(&g, self.soft_square);
         let mut result = LinearFactors {
@@ -206,12 +206,12 @@ impl<R: Real> Variation<R> {
         let at = |k: usize| [g[0][k], g[1][k], g[2][k]];
         let norm = |v: [R; 3]| dot(&v, &v).sqrt();
         let minus = |a: [R; 3], b: [R; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-        let d: [[R; 3]; 3] = std::array::from_fn(|k| minus(at(k + 1), at(k)));
+        let d: [[R; 3]; 3] = each(|k| minus(at(k + 1), at(k)));
         let first = number(3.0) * norm(d[0]).max(norm(d[1])).max(norm(d[2]));
         let second = number(6.0) * norm(minus(d[1], d[0])).max(norm(minus(d[2], d[1])));
         let most = (0..4).fold(R::ZERO, |m, k| m.max(norm(at(k))));
         // |g| is at least its component along any direction: take that of the mean of the ends.
-        let ends: [R; 3] = std::array::from_fn(|a| g[a][0] + g[a][3]);
+        let ends: [R; 3] = each(|a| g[a][0] + g[a][3]);
         let along = norm(ends);
         let least = (0..4).fold(most, |m, k| m.min(dot(&at(k), &ends) / along));
         let s = soft_square;
@@ -256,19 +256,22 @@ impl<R: Real> Variation<R> {
         // |x′| is at most |n′| times the sine.
         let speed = self.turn * (R::ONE - low * low).max(R::ZERO).sqrt();
         let [w0, w1, w2] = self.fade;
-        let (f0, f1) = if p == R::ONE { (high, R::ONE) } else { (high.powf(p), p * high.powf(p - R::ONE)) };
+        let two = number(2.0);
+        // One power serves the function and its derivatives; x^p has no bounded second derivative at 0 for 1 < p < 2.
+        let (f0, f1, f2) = if p == R::ONE {
+            (high, R::ONE, Some(R::ZERO))
+        } else if p < two {
+            let power = high.powf(p - R::ONE);
+            (power * high, p * power, None)
+        } else {
+            let power = high.powf(p - two);
+            (power * high * high, p * power * high, Some(p * (p - R::ONE) * power))
+        };
         // A function with |f′| ≤ L is within L/2 of the line through its ends.
         let first = w1 * f0 + w0 * f1 * speed;
         let crude = crude.min(number(0.5) * first);
-        // x^p has no bounded second derivative at 0 for 1 < p < 2.
-        let f2 = if p == R::ONE {
-            R::ZERO
-        } else if p < number(2.0) {
-            return crude;
-        } else {
-            p * (p - R::ONE) * high.powf(p - number(2.0))
-        };
-        let second = w2 * f0 + number(2.0) * w1 * f1 * speed + w0 * (f2 * speed * speed + f1 * self.bend);
+        let Some(f2) = f2 else { return crude };
+        let second = w2 * f0 + two * w1 * f1 * speed + w0 * (f2 * speed * speed + f1 * self.bend);
         crude.min(number(0.125) * second)
     }
 }

@@ -14,6 +14,7 @@ pub(super) use kernel::Kernel;
 
 use crate::error::{Error, Fault, Result};
 use crate::plan::March;
+use crate::scene::{Model, Scene};
 use crate::volume::Grid;
 
 /// Samples along one ray beyond which a step is refused.
@@ -22,9 +23,15 @@ const MOST_SAMPLES_PER_RAY: f64 = 1e8;
 /// Refuses settings that mean nothing or would take for ever.
 ///
 /// # Errors
-/// `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
+/// `Fault::Unsupported` for a scene that is not of light, `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
 /// through the volume would take more than 10⁸ samples.
-pub(super) fn check(settings: &March, grid: &Grid) -> Result<()> {
+pub(super) fn check(settings: &March, scene: &Scene, grid: &Grid) -> Result<()> {
+    if scene.model != Model::Light {
+        return Err(Error::new(Fault::Unsupported, "marching integrates light only")
+            .element("integrate.march")
+            .found("a scene of values or surfaces")
+            .remedy("use integrate: exact, which finds them without steps"));
+    }
     let step = settings.step_mm;
     if !(step.is_finite() && step > 0.0) {
         return Err(Error::new(Fault::Spec, "the step is not usable")
@@ -39,10 +46,10 @@ pub(super) fn check(settings: &March, grid: &Grid) -> Result<()> {
             .found(least.to_string())
             .expected("a number from 0 (never) to below 1"));
     }
+    // The longest chord of a parallelepiped is one of its four diagonals.
     let corners = grid.corners_mm();
-    let longest_mm = corners.iter().map(|c| c.distance(corners[7]).max(c.distance(corners[0]))).fold(0.0, f64::max);
-    // The four diagonals of a sheared box differ by at most twice the longest edge sum; an upper bound is enough here.
-    let samples = 2.0 * longest_mm / step;
+    let longest_mm = (0..4).map(|c| corners[c].distance(corners[7 - c])).fold(0.0, f64::max);
+    let samples = longest_mm / step;
     if samples > MOST_SAMPLES_PER_RAY {
         return Err(Error::new(Fault::Limit, "the step is too small for the volume")
             .element("integrate.march.step")

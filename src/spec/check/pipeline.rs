@@ -25,7 +25,7 @@ pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> R
         let [low, high] = gradient.range_hu_per_mm;
         check.require("gradient.range_hu_per_mm", low == 0.0 && high > 0.0, "[0, highest], the highest above 0")?;
     }
-    check.require("transfer_function", !pipeline.transfer_function.is_empty(), "at least one layer")?;
+    check_what_shows(check, pipeline)?;
     for (i, layer) in pipeline.transfer_function.iter().enumerate() {
         check_layer(check, &format!("transfer_function.{i}"), layer)?;
     }
@@ -74,7 +74,34 @@ fn check_layer(check: Check<'_>, path: &str, layer: &LayerSpec) -> Result<()> {
     }
 }
 
+/// Light needs a transfer function; numbers of the values, and surfaces, have no use for one, nor numbers for shading.
+fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<()> {
+    let effects = pipeline.effects.clone().unwrap_or_default();
+    let (project, surfaces) = (effects.project.is_some(), effects.surfaces.is_some());
+    check.unread("effects.surfaces", project && surfaces, "effects.project shows a number of the values instead")?;
+    let written = !pipeline.transfer_function.is_empty();
+    let why = if project { "effects.project shows a number of the values" } else { "effects.surfaces shows surfaces" };
+    check.unread("transfer_function", written && (project || surfaces), why)?;
+    check.unread("effects.shading", effects.shading.is_some() && project, "a number of the values has no light")?;
+    let marched = matches!(pipeline.integrate, Some(IntegrateSpec::March(_)));
+    check.unread("integrate.march", marched && (project || surfaces), "they are exact, and take no steps")?;
+    if project || surfaces {
+        return Ok(());
+    }
+    check.require("transfer_function", written, "at least one layer")
+}
+
 fn check_effects(check: Check<'_>, effects: &EffectsSpec) -> Result<()> {
+    if let Some([low, high]) = effects.project.as_ref().and_then(|project| project.window_hu) {
+        check.require("effects.project.window_hu", low < high, "[lowest, highest], the lower first")?;
+    }
+    if let Some(surfaces) = &effects.surfaces {
+        check.require("effects.surfaces", !surfaces.is_empty(), "at least one surface")?;
+        for (i, surface) in surfaces.iter().enumerate() {
+            let within = surface.opacity.is_none_or(|a| (0.0..=1.0).contains(&a));
+            check.require(&format!("effects.surfaces.{i}.opacity"), within, "0 to 1")?;
+        }
+    }
     let Some(shading) = &effects.shading else { return Ok(()) };
     let path = |key: &str| join("effects.shading", key);
     check.at_least(&path("ambient"), shading.ambient, 0.0)?;

@@ -9,8 +9,8 @@ pub(super) fn tissues() -> Vec<Tissue> {
     let mut tissues: Vec<Tissue> = [
         (deep_face(), 9.0),
         (neck_core(), 5.0),
-        (temporalis().mirrored(), 5.0),
-        (masseter().mirrored(), 4.5),
+        (temporalis().mirrored(), 3.4),
+        (masseter().mirrored(), 3.4),
         (sternomastoid().mirrored(), 3.6),
         (nuchal().mirrored(), 6.0),
         (lips(), 1.6),
@@ -54,13 +54,13 @@ fn neck_core() -> Solid {
 }
 
 fn temporalis() -> Solid {
-    let fan = ellipsoid((62.0, -24.0, 42.0), (14.0, 44.0, 46.0));
+    let fan = ellipsoid((64.0, -24.0, 40.0), (14.0, 46.0, 48.0));
     let tendon = tube(&[(58.0, -36.0, 20.0, 10.0), (52.0, -38.0, -14.0, 6.0)]);
     blend(10.0, [fan, tendon])
 }
 
 fn masseter() -> Solid {
-    let superficial = tube(&[(58.0, -46.0, -12.0, 6.0), (57.0, -34.0, -34.0, 8.0), (54.0, -24.0, -60.0, 6.0)]);
+    let superficial = tube(&[(59.0, -46.0, -12.0, 6.0), (59.0, -34.0, -34.0, 9.0), (55.0, -24.0, -60.0, 7.0)]);
     let deep = tube(&[(60.0, -30.0, -10.0, 5.0), (57.0, -24.0, -34.0, 6.0), (54.0, -18.0, -56.0, 5.0)]);
     blend(6.0, [superficial, deep])
 }
