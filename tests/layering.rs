@@ -31,7 +31,7 @@ const NEVER: [(&str, &str, &str); 1] =
 /// Uses that the layers forbid and are right all the same: `(user, used, why)`.
 const EXCEPTIONS: [(&str, &str, &str); 2] = [
     ("scene", "transfer", "a scene holds its transfer function, which knows of no scene"),
-    ("scene", "image", "a window of greys is defined by the transfer curve of displays, which is the picture's"),
+    ("scene", "image", "the grey of a projected value is defined by what a display shows: sRGB"),
 ];
 
 /// The layer of a module of the library.
