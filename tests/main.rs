@@ -16,3 +16,4 @@ mod plan;
 mod properties;
 mod spec;
 mod support;
+mod verify;

@@ -17,7 +17,7 @@ use crate::volume::Volume;
 const SIZE: usize = 32;
 
 /// Random rays per scene.
-const RAYS: usize = 1500;
+const RAYS: usize = 2000;
 
 const TOLERANCES: [(&str, f64); 3] = [("1/255", 1.0 / 255.0), ("1e-3", 1e-3), ("1e-4", 1e-4)];
 
