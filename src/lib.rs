@@ -32,6 +32,7 @@ pub mod plan;
 pub mod integrate;
 
 pub mod pipeline;
+pub mod verify;
 
 pub use error::{Error, Fault, Result};
 pub use image::Image;

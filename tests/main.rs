@@ -17,3 +17,4 @@ mod plan;
 mod properties;
 mod spec;
 mod support;
+mod verify;

@@ -15,6 +15,7 @@ pub(crate) mod report;
 mod schema;
 mod stderr;
 mod stdout;
+mod verify;
 
 use std::path::PathBuf;
 
@@ -61,6 +62,8 @@ enum Command {
     Presets(presets::Presets),
     /// Print the JSON Schema of pipelines or presets, for editors
     Schema(schema::Schema),
+    /// Verify the integrators: orders of convergence, errors against the truth, identities
+    Verify(verify::Verify),
     /// Print a completion script for a shell
     Completions(completions::Completions),
 }
@@ -110,6 +113,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         Command::Phantom(command) => command.run(),
         Command::Presets(command) => command.run(),
         Command::Schema(command) => command.run(),
+        Command::Verify(command) => command.run(),
         Command::Completions(command) => command.run(),
     }
 }

@@ -50,13 +50,7 @@ fn a_gradient_that_vanishes_at_a_point_is_passed_without_harm() {
             for offset in [1e-7, 1e-10, 1e-13] {
                 let beside = Ray { origin_mm: through.origin_mm + DVec3::new(0.0, offset, -0.5 * offset), ..through };
                 let found = renderer.sees(&volume, &lit, &beside);
-                assert_sees(
-                    &renderer,
-                    &format!("{offset:e} mm beside"),
-                    found,
-                    top,
-                    30.0 * offset + renderer.tolerance,
-                );
+                assert_sees(&renderer, &format!("{offset:e} mm beside"), found, top, 30.0 * offset);
             }
         }
     }
@@ -105,7 +99,7 @@ fn integers_and_floats_of_the_same_value_are_the_same() {
         for ray in rays_through(integers.grid(), 20, 31) {
             let scene = scene(function_2d(&points, &[[0.0, 0.5], [300.0, 1.0]]));
             let (found, expected) = (renderer.sees(&floats, &scene, &ray), renderer.sees(&integers, &scene, &ray));
-            assert_sees(&renderer, "f32 for i16", found, expected, renderer.tolerance);
+            assert_sees(&renderer, "f32 for i16", found, expected, 0.0);
         }
     }
 }
@@ -165,7 +159,7 @@ fn sampling_a_trilinear_field_more_finely_changes_nothing() {
             for ray in rays_through(coarse.grid(), 15, 33) {
                 let scene = scene(function_1d(&points));
                 let (found, expected) = (renderer.sees(&fine, &scene, &ray), renderer.sees(&coarse, &scene, &ray));
-                assert_sees(&renderer, &format!("{n} voxels a side"), found, expected, 1e-12 + renderer.tolerance);
+                assert_sees(&renderer, &format!("{n} voxels a side"), found, expected, 1e-12);
             }
         }
     }

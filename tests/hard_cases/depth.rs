@@ -3,7 +3,7 @@
 use pellucid::transfer::{Curve, Knot, Optics, Term};
 use pellucid::volume::Volume;
 
-use super::{assert_sees, renderers, slab};
+use super::{assert_sees, renderers, renderers_without_march, slab};
 use crate::support::scenes::{
     BLUE, BONE, RED, difference, function, function_1d, noise_hu, ray, rays_through, scene, unit_grid, volume_i16,
     volume_of,
@@ -28,7 +28,7 @@ fn along_x() -> Ray {
 fn thin_fog_keeps_its_digits() {
     for extinction in [1e-15, 1e-12, 1e-9, 1e-8, 1e-6, 1e-4, 1e-2] {
         let expected = slab(BONE, 10.0 * extinction);
-        for renderer in renderers() {
+        for renderer in renderers_without_march("a transmittance in f32 loses what is below 6e-8 of it") {
             let found = renderer.sees(&uniform(), &scene(function_1d(&[(0.0, extinction, BONE)])), &along_x());
             assert_sees(&renderer, &format!("extinction {extinction:e}/mm"), found, expected, 0.0);
             // 1 - exp(-x) would have lost every digit of these.
@@ -120,10 +120,11 @@ fn white_matter_before_white_light_is_white() {
         [(-500.0, 0.0, white), (-100.0, 3.0, white), (-100.0, 0.001, white), (300.0, 0.0, white), (310.0, 40.0, white)];
     for renderer in renderers() {
         for ray in rays_through(volume.grid(), 50, 13) {
-            let [r, g, b, alpha] = renderer.sees(&volume, &scene(function_1d(&points)), &ray);
+            let found = renderer.sees(&volume, &scene(function_1d(&points)), &ray);
+            let [r, g, b, alpha] = *found;
             let sum = [r, g, b].map(|c| c + (1.0 - alpha));
             let error = difference(sum, white);
-            assert!(error <= 2.0 * renderer.tolerance, "{}: found {sum:?} along {ray:?}", renderer.name);
+            assert!(error <= 2.0 * found.bound, "{}: found {sum:?} along {ray:?}", renderer.name);
         }
     }
 }
