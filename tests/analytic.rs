@@ -199,7 +199,8 @@ fn rules_converge_with_their_orders() {
     let term = Term { curve: Curve::new(knots).unwrap(), weight: None };
     let transfer_function = TransferFunction::new([0.0, 1.0], 1.0, vec![term]).unwrap();
     let camera = seen(&volume, DVec3::new(0.48, 0.64, 0.6), Projection::Parallel { height_mm: 14.0 }, [12, 12]);
-    let scene = Scene { model: Model::Light, transfer_function, shading: None, camera, background: Background::Transparent };
+    let scene =
+        Scene { model: Model::Light, transfer_function, shading: None, camera, background: Background::Transparent };
     let truth = crate::march::naive_march(&volume, &scene, &March { step_mm: 1.0 / 512.0, ..MARCH });
     let steps = [2.0, 1.0, 0.5, 0.25];
     for (rule, expected) in [(SampleRule::Left, 1.0), (SampleRule::Midpoint, 2.0), (SampleRule::Trapezoid, 2.0)] {

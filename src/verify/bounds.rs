@@ -7,7 +7,7 @@ use super::report::Check;
 use crate::error::Result;
 use crate::integrate::exact::{Precision, Traced, tracer};
 use crate::oracle::Oracle;
-use crate::scene::{Background, Camera, Light, Projection, Scene, Shading};
+use crate::scene::{Background, Camera, Light, Model, Projection, Scene, Shading};
 use crate::synthetic::{self, HeadPhantom};
 use crate::transfer::shapes::{Shape, extinction_per_mm};
 use crate::transfer::{Optics, Term, TransferFunction};
@@ -110,6 +110,7 @@ fn scene(volume: &Volume, by_gradient: bool, shading: Option<Shading>) -> Result
         terms.extend(shape.expand(optics, 0.0)?.terms);
     }
     Ok(Scene {
+        model: Model::Light,
         transfer_function: TransferFunction::new([-1024.0, 3071.0], 1500.0, terms)?,
         shading,
         camera: nobody_looks(volume)?,
