@@ -103,17 +103,24 @@ fn for_samples<'a, V: Voxel>(
     let lattice = Lattice::new(volume, samples);
     let frame = Frame { grid: volume.grid(), lattice, tolerance, brightest: Brightest::of(scene) };
     let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
-    let name = |classifier: &str| {
+    let name = |classifier: &str, precision: Precision| {
         let lit = if shading.is_some() { "lit" } else { "unlit" };
         let real = if precision == Precision::Single { "f32" } else { "f64" };
         format!("exact/{}/{classifier}/{lit}/{real}", V::NAME)
     };
+    // Knots that f32 cannot tell apart would take with them what lies between, however bright.
+    let unless = |vanished: bool| if vanished { Precision::Double } else { precision };
     match (bake::<f64>(tf, rescale), bake::<f32>(tf, rescale)) {
         (Baked::OneD(double), Baked::OneD(single)) => {
-            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf1d") })
+            let precision = unless(single.axis().intervals() < double.axis().intervals());
+            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf1d", precision) })
         }
         (Baked::TwoD(double), Baked::TwoD(single)) => {
-            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf2d") })
+            let precision = unless(
+                single.values().intervals() < double.values().intervals()
+                    || single.gradients().intervals() < double.gradients().intervals(),
+            );
+            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf2d", precision) })
         }
         _ => unreachable!("both precisions bake the same transfer function"),
     }
