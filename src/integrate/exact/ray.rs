@@ -103,8 +103,13 @@ impl<V: Voxel> Frame<'_, V> {
         splits: &mut Splits<R>,
     ) -> Option<Traced> {
         let inside = IndexRay::clip(ray, self.grid)?;
-        let mut light =
-            Front { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, budget: Budget::new(self.tolerance), pieces: 0 };
+        let mut light = Front {
+            radiance: [0.0; 3],
+            transmittance: 1.0,
+            opacity: 0.0,
+            budget: Budget::new(self.tolerance),
+            pieces: 0,
+        };
         for segment in inside.segments(self.grid) {
             let stored = self.lattice.corners(segment.cell);
             let Some(fields) = medium.fields(&stored, &segment, || self.lattice.gradients(segment.cell)) else {
