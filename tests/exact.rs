@@ -21,7 +21,7 @@ fn held_against_the_oracle(volume: &Volume, scene: &Scene, tolerance: f64, preci
             continue;
         };
         let [r, g, b] = found.radiance;
-        let error = [r, g, b, 1.0 - found.transmittance]
+        let error = [r, g, b, found.opacity]
             .iter()
             .zip(truth)
             // NaN counts as infinite.
@@ -108,7 +108,7 @@ fn the_comparison_fails_for_a_picture_that_is_slightly_wrong() {
     let oracle = Oracle::new(&volume, &truth);
     let off = (0..256).filter(|&pixel| {
         let ray = truth.camera.pixel_ray(pixel % 16, pixel / 16);
-        tracer.trace(&ray).is_some_and(|t| (1.0 - t.transmittance - oracle.radiance(&ray)[3]).abs() > t.bound)
+        tracer.trace(&ray).is_some_and(|t| (t.opacity - oracle.radiance(&ray)[3]).abs() > t.bound)
     });
     assert!(off.count() > 20, "a transfer function shifted by 2 HU must break the bound");
 }

@@ -20,7 +20,7 @@ fn greatest_error(volume: &Volume, scene: &Scene) -> f64 {
         let truth = oracle.radiance(&ray);
         let found = tracer.trace(&ray).map_or([0.0; 4], |t| {
             let [r, g, b] = t.radiance;
-            [r, g, b, 1.0 - t.transmittance]
+            [r, g, b, t.opacity]
         });
         for (x, t) in found.into_iter().zip(truth) {
             let error = if x.is_nan() { f64::INFINITY } else { (x - t).abs() };

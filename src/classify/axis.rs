@@ -78,6 +78,13 @@ impl<R: Real> Axis<R> {
         self.steep[knot]
     }
 
+    /// Width of the narrowest interval over the largest magnitude of a knot.
+    pub fn narrowest(&self) -> f64 {
+        let largest = self.knots.iter().map(|k| k.to_f64().abs()).fold(0.0, f64::max);
+        let widths = self.knots.windows(2).map(|pair| (pair[1] - pair[0]).to_f64());
+        widths.fold(f64::INFINITY, f64::min) / largest
+    }
+
     /// Number of intervals.
     #[inline(always)]
     pub fn intervals(&self) -> usize {

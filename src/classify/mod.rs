@@ -50,6 +50,14 @@ impl<R: Real> Baked<R> {
         }
     }
 
+    /// Width of the narrowest interval between knots, over the largest magnitude of a knot on its axis.
+    pub fn narrowest(&self) -> f64 {
+        match self {
+            Baked::OneD(c) => c.axis().narrowest(),
+            Baked::TwoD(c) => c.values().narrowest().min(c.gradients().narrowest()),
+        }
+    }
+
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         match self {

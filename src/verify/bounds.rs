@@ -63,7 +63,7 @@ fn worst(traced: &[Option<Traced>], truth: &[[f64; 4]]) -> Worst {
         // A ray that is missed has seen nothing, and is sure of it.
         let (found, bound) = traced.map_or(([0.0; 4], 0.0), |t| {
             let [r, g, b] = t.radiance;
-            ([r, g, b, 1.0 - t.transmittance], t.bound)
+            ([r, g, b, t.opacity], t.bound)
         });
         let error = super::largest_difference(&[found], &[*truth]);
         worst.error = worst.error.max(error);
@@ -131,8 +131,9 @@ mod tests {
 
     #[test]
     fn a_ray_above_its_bound_and_a_ray_that_is_no_number_are_found() {
-        let traced =
-            |red: f64, bound: f64| Some(Traced { radiance: [red, 0.0, 0.0], transmittance: 1.0, bound, pieces: 1 });
+        let traced = |red: f64, bound: f64| {
+            Some(Traced { radiance: [red, 0.0, 0.0], transmittance: 1.0, opacity: 0.0, bound, pieces: 1 })
+        };
         let found = worst(&[traced(0.5, 0.125), None], &[[0.25, 0.0, 0.0, 0.0], [0.0; 4]]);
         assert_eq!(found, Worst { error: 0.25, of_bound: 2.0 });
         let missed = worst(&[None], &[[0.0, 0.0, 0.0, 0.5]]);

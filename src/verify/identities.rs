@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::transfer::{Optics, TransferFunction};
 use crate::volume::Volume;
 
-/// Difference that a step of [`STEP_MM`] and rounding in f32 may make to a march of second order.
+/// Difference that 512 steps across the cube and rounding in f32 may make to a march of second order.
 pub const MARCHING: f64 = 4e-5;
 
 /// The step, mm.

@@ -11,7 +11,7 @@ use super::{Integrator, largest_difference};
 use crate::error::Result;
 use crate::scene::Scene;
 
-/// Difference that rounding in f32 may make to a march at [`STEP_MM`].
+/// Difference that rounding in f32 may make to a march in 512 steps across the cube.
 pub const MARCHING: f64 = 2e-5;
 
 /// The step while the lattice is refined, mm.

@@ -68,7 +68,7 @@ pub(crate) fn measure(volume: &Volume, scene: &Scene, truth: &Truth, tolerance: 
 fn error_and_bound(traced: Option<&Traced>, truth: &[f64; 4]) -> (f64, f64) {
     let (found, bound) = traced.map_or(([0.0; 4], 0.0), |t| {
         let [r, g, b] = t.radiance;
-        ([r, g, b, 1.0 - t.transmittance], t.bound)
+        ([r, g, b, t.opacity], t.bound)
     });
     let off = found.iter().zip(truth).map(|(x, y)| (x - y).abs());
     (off.map(|d| if d.is_nan() { f64::INFINITY } else { d }).fold(0.0, f64::max), bound)

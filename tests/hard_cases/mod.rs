@@ -191,7 +191,7 @@ fn renderers_without_march(_reason: &'static str) -> Vec<Renderer> {
 fn traced(volume: &Volume, scene: &Scene, ray: &Ray, tolerance: f64, precision: Precision) -> Sight {
     let Some(traced) = tracer(volume, scene, tolerance, precision).trace(ray) else { return [0.0; 4].into() };
     let [r, g, b] = traced.radiance;
-    Sight { rgba: [r, g, b, 1.0 - traced.transmittance], bound: traced.bound }
+    Sight { rgba: [r, g, b, traced.opacity], bound: traced.bound }
 }
 
 /// Marched in 4000 steps from corner to corner.

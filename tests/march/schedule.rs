@@ -45,8 +45,7 @@ fn empty_space_skipping_saves_samples_and_changes_nothing() {
                     for (lattice, step_mm) in
                         [(Lattice::PerRay, 0.07), (Lattice::ViewPlanes, 0.3), (Lattice::PerRay, 3.0)]
                     {
-                        let settings =
-                            March { rule, order, lattice, step_mm, termination_transmittance: 1e-2, ..MARCH };
+                        let settings = March { rule, order, lattice, step_mm, termination_transmittance: 0.3, ..MARCH };
                         let all = Schedule { empty_space_skipping: false, ..Schedule::default() };
                         let all = rendered(&volume, &scene, settings, all);
                         let skipped = rendered(&volume, &scene, settings, Schedule::default());

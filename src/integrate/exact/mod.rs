@@ -117,12 +117,16 @@ fn for_samples<'a, V: Voxel>(
             return Box::new(Direct { trace, name: format!("exact/{}/surfaces/f64", V::NAME) });
         }
     }
+    let double = bake::<f64>(tf, rescale);
+    // Across an interval this narrow, the rounding of a value in f32 would cost more than rounding may.
+    let too_narrow = double.narrowest() < SHARE_OF_ROUNDING * f64::from(f32::EPSILON) / tolerance;
+    let precision = if too_narrow { Precision::Double } else { precision };
     let name = |classifier: &str| {
         let lit = if shading.is_some() { "lit" } else { "unlit" };
         let real = if precision == Precision::Single { "f32" } else { "f64" };
         format!("exact/{}/{classifier}/{lit}/{real}", V::NAME)
     };
-    match (bake::<f64>(tf, rescale), bake::<f32>(tf, rescale)) {
+    match (double, bake::<f32>(tf, rescale)) {
         (Baked::OneD(double), Baked::OneD(single)) => {
             Box::new(Kernel { frame, shading, double, single, precision, name: name("tf1d") })
         }
@@ -132,6 +136,9 @@ fn for_samples<'a, V: Voxel>(
         _ => unreachable!("both precisions bake the same transfer function"),
     }
 }
+
+/// How many roundings of a value in f32, over the width of an interval between knots, may make up the tolerance.
+const SHARE_OF_ROUNDING: f64 = 0.2;
 
 /// A kernel that needs nothing but its ray.
 struct Direct<F> {

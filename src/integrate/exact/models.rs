@@ -28,7 +28,7 @@ pub(super) fn show_value<V: Voxel>(
         ValueOf::Mean => mean(lattice, grid, ray)?,
     };
     let light = model.light(rescale.value(stored));
-    Some(Traced { radiance: [light; 3], transmittance: 0.0, bound: ROUNDING, pieces: 1 })
+    Some(Traced { radiance: [light; 3], transmittance: 0.0, opacity: 1.0, bound: ROUNDING, pieces: 1 })
 }
 
 /// Composites the level surfaces along a ray, front to back.
@@ -41,7 +41,7 @@ pub(super) fn show_surfaces<V: Voxel>(
     ray: &Ray,
 ) -> Traced {
     let levels: Vec<f64> = surfaces.iter().map(|s| rescale.stored(s.value)).collect();
-    let mut traced = Traced { radiance: [0.0; 3], transmittance: 1.0, bound: ROUNDING, pieces: 0 };
+    let mut traced = Traced { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, bound: ROUNDING, pieces: 0 };
     crossings(lattice, grid, ray, &levels, |crossing| {
         let Surface { opacity, color, .. } = surfaces[crossing.level];
         let (reflected, highlight) = match shading {
@@ -51,6 +51,7 @@ pub(super) fn show_surfaces<V: Voxel>(
         for c in 0..3 {
             traced.radiance[c] += traced.transmittance * opacity * (color[c] * reflected[c] + highlight[c]);
         }
+        traced.opacity += traced.transmittance * opacity;
         traced.transmittance -= traced.transmittance * opacity;
         traced.pieces += 1;
         traced.transmittance > 0.0

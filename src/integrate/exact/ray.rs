@@ -26,6 +26,8 @@ pub struct Traced {
     pub radiance: [f64; 3],
     /// What is left of light from behind the volume.
     pub transmittance: f64,
+    /// What is absorbed of it, `1 − transmittance`, with all its digits however small it is.
+    pub opacity: f64,
     /// Proven bound on the error of a channel of `radiance` and of `transmittance`, rounding estimated.
     pub bound: f64,
     /// Pieces integrated, those rejected included.
@@ -101,8 +103,13 @@ impl<V: Voxel> Frame<'_, V> {
         splits: &mut Splits<R>,
     ) -> Option<Traced> {
         let inside = IndexRay::clip(ray, self.grid)?;
-        let mut light =
-            Front { radiance: [0.0; 3], transmittance: 1.0, budget: Budget::new(self.tolerance), pieces: 0 };
+        let mut light = Front {
+            radiance: [0.0; 3],
+            transmittance: 1.0,
+            opacity: 0.0,
+            budget: Budget::new(self.tolerance),
+            pieces: 0,
+        };
         for segment in inside.segments(self.grid) {
             let stored = self.lattice.corners(segment.cell);
             let Some(fields) = medium.fields(&stored, &segment, || self.lattice.gradients(segment.cell)) else {
@@ -137,6 +144,7 @@ impl<V: Voxel> Frame<'_, V> {
 struct Front {
     radiance: [f64; 3],
     transmittance: f64,
+    opacity: f64,
     budget: Budget,
     pieces: u64,
 }
@@ -168,6 +176,7 @@ impl Front {
             for (sum, &x) in self.radiance.iter_mut().zip(&integral.radiance) {
                 *sum += t * x.to_f64();
             }
+            self.opacity += t * integral.absorbed.to_f64();
             self.transmittance = next;
             self.budget.spend(error);
             from = to;
@@ -181,6 +190,7 @@ impl Front {
         Traced {
             radiance: self.radiance,
             transmittance: self.transmittance,
+            opacity: self.opacity,
             bound: self.budget.bound(rest),
             pieces: self.pieces,
         }

@@ -41,8 +41,14 @@ impl<R: Real> Splits<R> {
         }
         let cuts_before = self.positions.len();
         self.cut_at(cubic, &knots[first..last]);
+        let (critical, count) = critical_points(cubic);
+        // Where a level is only touched there is a piece on either side, whose middle says on which side of it they are.
+        let touching = critical.into_iter().take(count).filter(|&u| {
+            let touched = value(cubic, u);
+            knots[first..last].iter().any(|&x| (touched - x).abs() <= rounding)
+        });
+        self.positions.extend(touching);
         for knot in (first..last).filter(|&k| axis.is_steep(k)) {
-            let (critical, count) = critical_points(cubic);
             let near = |u: R| (value(cubic, u) - knots[knot]).abs() <= rounding;
             let touches = critical.into_iter().take(count).any(near);
             let grazes =
