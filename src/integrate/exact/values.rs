@@ -204,7 +204,7 @@ mod tests {
         let volume = volume();
         let levels = [0.0, 50.0];
         for ray in rays() {
-            let mut found = vec![0usize; 2];
+            let mut found = [0_usize; 2];
             let mut last = f64::MIN;
             crossings(&lattice(&volume), volume.grid(), &ray, &levels, |c| {
                 assert!(c.at_mm >= last, "front to back");
@@ -217,7 +217,7 @@ mod tests {
                 let expected = samples.windows(2).filter(|p| (p[0] >= level) != (p[1] >= level)).count();
                 // Sampling misses pairs that are closer than it is fine, never the parity.
                 assert!(
-                    found[n] >= expected && (found[n] - expected) % 2 == 0,
+                    found[n] >= expected && (found[n] - expected).is_multiple_of(2),
                     "found {}, sampled {expected}",
                     found[n]
                 );
