@@ -43,7 +43,7 @@ pub use widget::{
     ContourSpec, EllipseSpec, EmissionSpec, GaussianSpec, PointSpec, RectangleSpec, TrapezoidSpec, TriangleSpec, Widget,
 };
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use crate::error::{Error, Result};
 use crate::volume::{Quantity, Rescale, Volume};
@@ -129,7 +129,7 @@ impl Spec {
 
     /// The picture's path, if the pipeline names one, relative to the working directory.
     pub fn output(&self) -> Option<PathBuf> {
-        self.pipeline.output.as_deref().map(|path| self.source.resolve("output", path))
+        self.pipeline.output.as_deref().map(|path| without_detours(&self.source.resolve("output", path)))
     }
 
     /// The volume with its values understood as the pipeline says: `values` and `shift_hu`.
@@ -147,5 +147,37 @@ impl Spec {
     /// An error about what is written at a key path such as `camera.position_mm`, with its place.
     pub fn error(&self, key_path: &str, what: impl Into<String>) -> Error {
         self.source.error(key_path, what)
+    }
+}
+
+/// A path as a person would write it: `pipelines/../out` is `out`. Only for a folder that the path names itself, so that
+/// it stays the same place unless that folder is a link.
+fn without_detours(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        let after_a_name = matches!(plain.components().next_back(), Some(Component::Normal(_)));
+        if part == Component::ParentDir && after_a_name {
+            plain.pop();
+        } else {
+            plain.push(part);
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_detour_is_left_out_of_a_path() {
+        for (written, plain) in [
+            ("pipelines/../out/a.png", "out/a.png"),
+            ("../out/a.png", "../out/a.png"),
+            ("a/b/../../../c.png", "../c.png"),
+            ("/a/../c.png", "/c.png"),
+        ] {
+            assert_eq!(without_detours(Path::new(written)), PathBuf::from(plain), "for {written}");
+        }
     }
 }
