@@ -53,7 +53,10 @@ fn summary(outcome: &Outcome) -> String {
         format!("{} on {} threads{}", sidecar.method.kernel, sidecar.threads, memory.unwrap_or_default()),
         format!("{} of {} voxels below the window, {} above", clipped.below, clipped.voxels, clipped.above),
     ];
-    lines.extend(sidecar.certificate.iter().map(|c| format!("{}; largest error {:.2e}", c.statement, c.largest_error)));
+    lines.extend(sidecar.certificate.iter().map(|c| {
+        let [largest, most, rms] = [c.largest_error, c.error_of_999_in_1000, c.rms_error];
+        format!("{}; largest error {largest:.2e}, 99.9 % below {most:.2e}, RMS {rms:.2e}", c.statement)
+    }));
     lines.extend(sidecar.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.push(format!("how it was made: {}", outcome.sidecar_path.display()));
     lines.join("\n")

@@ -24,6 +24,8 @@ pub struct Certificate {
     pub largest_error: f64,
     /// The error that 99.9 % of these pixels do not exceed.
     pub error_of_999_in_1000: f64,
+    /// Root of the mean square of these errors.
+    pub rms_error: f64,
     /// Pixels whose error is above the tolerance, where one was asked for.
     pub above_tolerance: Option<usize>,
     /// What follows for the whole picture.
@@ -49,15 +51,22 @@ impl Certificate {
         Certificate::from_errors(errors, image.pixels().len(), tolerance)
     }
 
+    /// Whether a pixel is above the tolerance that was asked for, or is no number at all.
+    pub(super) fn fails(&self) -> bool {
+        self.above_tolerance.is_some_and(|above| above > 0) || !self.largest_error.is_finite()
+    }
+
     fn from_errors(mut errors: Vec<f64>, of_pixels: usize, tolerance: Option<f64>) -> Self {
         errors.sort_by(f64::total_cmp);
         let pixels = errors.len();
         let rank = (0.999 * pixels as f64).ceil() as usize;
+        let square = errors.iter().map(|error| error * error).sum::<f64>();
         let above_tolerance = tolerance.map(|t| errors.iter().filter(|error| **error > t).count());
         Certificate {
             pixels,
             largest_error: errors.last().copied().unwrap_or(0.0),
             error_of_999_in_1000: rank.checked_sub(1).map_or(0.0, |index| errors[index]),
+            rms_error: (square / pixels.max(1) as f64).sqrt(),
             above_tolerance,
             statement: statement(pixels, of_pixels, above_tolerance),
         }
@@ -115,7 +124,18 @@ mod tests {
         let certificate = Certificate::from_errors(errors, 4000, Some(0.004));
         assert_eq!((certificate.largest_error, certificate.error_of_999_in_1000), (0.5, 0.001));
         assert_eq!(certificate.above_tolerance, Some(1));
+        let rms = ((999.0 * 1e-6 + 0.25) / 1000.0f64).sqrt();
+        assert!((certificate.rms_error - rms).abs() < 1e-12, "found {}, expected {rms}", certificate.rms_error);
         assert_eq!(certificate.statement, "1 of 1000 above tolerance");
+    }
+
+    #[test]
+    fn a_broken_tolerance_and_a_pixel_that_is_no_number_are_failures() {
+        let judged = |errors: &[f64], tolerance| Certificate::from_errors(errors.to_vec(), 9, tolerance).fails();
+        assert!(judged(&[0.0, 0.005], Some(0.004)), "above the tolerance");
+        assert!(!judged(&[0.0, 0.003], Some(0.004)), "within it");
+        assert!(!judged(&[0.0, 0.3], None), "no tolerance was asked for");
+        assert!(judged(&[0.0, f64::INFINITY], None), "a NaN, which counts as infinite, whatever was asked for");
     }
 
     #[test]

@@ -116,7 +116,8 @@ fn encode(image: &Image, output: &Output, texts: &[(String, String)]) -> Result<
 
 fn refuse_above_tolerance(picture: &Path, certificate: Option<&Certificate>) -> Result<()> {
     match certificate {
-        Some(Certificate { above_tolerance: Some(above), largest_error, statement, .. }) if *above > 0 => {
+        Some(certificate) if certificate.fails() => {
+            let Certificate { largest_error, statement, .. } = certificate;
             Err(Error::new(Fault::Tolerance, "the picture is not within its tolerance")
                 .at(picture)
                 .found(format!("{statement}, the largest error {largest_error:.3e}"))
@@ -138,4 +139,26 @@ fn prepare_folder(picture: &Path) -> Result<()> {
             .remedy("write elsewhere with -o, or make the folder writable")
             .caused_by(cause)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_that_breaks_its_tolerance_is_refused_with_an_exit_code_of_its_own() {
+        let certificate = |above| Certificate {
+            pixels: 1000,
+            largest_error: 0.01,
+            error_of_999_in_1000: 0.01,
+            rms_error: 0.001,
+            above_tolerance: Some(above),
+            statement: format!("{above} of 1000 above tolerance"),
+        };
+        let judged = |above| refuse_above_tolerance(Path::new("a.png"), Some(&certificate(above)));
+        assert!(judged(0).is_ok(), "none is above");
+        let error = judged(3).expect_err("three are above");
+        assert_eq!(error.fault().exit_code(), 9);
+        assert!(error.to_string().contains("3 of 1000 above tolerance"), "found {error}");
+    }
 }
