@@ -4,6 +4,7 @@ mod absorb;
 pub mod bernstein;
 mod each;
 mod real;
+pub mod scattering;
 
 pub use absorb::{absorbed_f32, mean_transmittance_f32};
 pub use each::each;

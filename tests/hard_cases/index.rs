@@ -32,5 +32,5 @@ fn every_case_stands_in_the_index_once() {
     let numbers: Vec<u32> = INDEX.iter().map(|(number, ..)| *number).collect();
     assert_eq!(numbers, (1..=31).collect::<Vec<_>>());
     let without_test: Vec<u32> = INDEX.iter().filter(|(.., names)| names.is_empty()).map(|(n, ..)| *n).collect();
-    assert_eq!(without_test, [30], "only scattering, which nobody computes, has no test");
+    assert!(without_test.is_empty(), "cases without a test: {without_test:?}");
 }

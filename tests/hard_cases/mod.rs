@@ -122,7 +122,11 @@ const INDEX: [(u32, &str, &[&str]); 31] = [
     (28, "threads and tile order", &["threads_and_tile_order_change_no_bit"]),
     (29, "f32 and f64", &["every_pixel_is_within_tolerance_and_bound"]),
     // Scattering is not computed by any integrator, so there is nothing to hold.
-    (30, "scattering in slabs", &[]),
+    (
+        30,
+        "scattering in slabs",
+        &["light_let_through_is_smooth_where_the_angles_meet", "the_phase_function_is_stable_as_it_becomes_isotropic"],
+    ),
     (
         31,
         "NaN in a metric",
