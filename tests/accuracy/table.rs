@@ -23,7 +23,7 @@ impl Table {
         let threads = rayon::current_num_threads();
         table.write(&format!(
             "# Accuracy of the exact integrator\n\n\
-             Every pixel of a {size} x {size} picture by the f32 kernel against the f64 oracle: largest error of a channel, linear\n\
+             Every pixel of a {size} x {size} picture by the exact integrator (in f64 where it finds f32 too coarse) against the oracle: largest error of a channel, linear\n\
              and premultiplied. Made by `cargo run --release --example accuracy`, pellucid {}.\n\n\
              Machine: {}, {threads} threads. Date: {}.\n\n\
              | scene | tolerance | max error | max error / bound | above tolerance | above bound | pixels | exact, s | oracle, s |\n\

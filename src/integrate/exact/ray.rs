@@ -1,5 +1,7 @@
 //! One ray, cell by cell and piece by piece, within its budget.
 
+use std::cell::OnceCell;
+
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::scene::{Ray, Scene};
@@ -112,10 +114,13 @@ impl<V: Voxel> Frame<'_, V> {
         };
         for segment in inside.segments(self.grid) {
             let stored = self.lattice.corners(segment.cell);
-            let Some(fields) = medium.fields(&stored, &segment, || self.lattice.gradients(segment.cell)) else {
+            // A 2D transfer function and shading read the same gradients; nobody may read any.
+            let at_corners = OnceCell::new();
+            let gradients = || *at_corners.get_or_init(|| self.lattice.gradients(segment.cell));
+            let Some(fields) = medium.fields(&stored, &segment, gradients) else {
                 continue;
             };
-            let shading = shader.cell(|| self.lattice.gradients(segment.cell).map(|c| along(&c, &segment)));
+            let shading = shader.cell(|| gradients().map(|c| along(&c, &segment)));
             let harm = self.brightest.per_mm.max(self.brightest.extinction_per_mm) * segment.length_mm;
             splits.restart(R::from_f64(harm / (OF_A_CUT * self.tolerance)));
             medium.cut(&fields, splits);
