@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DAffine3, DMat3, DVec3};
 use pellucid::field::{GradientUnits, Position, Trilinear};
 use pellucid::plan::{Jitter, JitterKind, Lattice, March, SampleRule};
-use pellucid::scene::{Background, Camera, Light, Model, Projection, Scene, Shading};
+use pellucid::scene::{Background, Camera, Effects, Light, Model, Projection, Scene, Shading};
 use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction};
 use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
 
@@ -162,6 +162,7 @@ fn a_ball_covers_the_area_of_its_silhouette() {
             shading: None,
             camera,
             background: Background::Transparent,
+            effects: Effects::default(),
         };
         let found = coverage(&volume, &scene);
         assert!((found / expected - 1.0).abs() < 5e-3, "{projection:?}: covers {found}, expected {expected}");
@@ -199,8 +200,14 @@ fn rules_converge_with_their_orders() {
     let term = Term { curve: Curve::new(knots).unwrap(), weight: None };
     let transfer_function = TransferFunction::new([0.0, 1.0], 1.0, vec![term]).unwrap();
     let camera = seen(&volume, DVec3::new(0.48, 0.64, 0.6), Projection::Parallel { height_mm: 14.0 }, [12, 12]);
-    let scene =
-        Scene { model: Model::Light, transfer_function, shading: None, camera, background: Background::Transparent };
+    let scene = Scene {
+        model: Model::Light,
+        transfer_function,
+        shading: None,
+        camera,
+        background: Background::Transparent,
+        effects: Effects::default(),
+    };
     let truth = crate::march::naive_march(&volume, &scene, &March { step_mm: 1.0 / 512.0, ..MARCH });
     let steps = [2.0, 1.0, 0.5, 0.25];
     for (rule, expected) in [(SampleRule::Left, 1.0), (SampleRule::Midpoint, 2.0), (SampleRule::Trapezoid, 2.0)] {

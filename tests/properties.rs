@@ -4,7 +4,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pellucid::integrate::exact::{Precision, tracer};
 use pellucid::oracle::Oracle;
-use pellucid::scene::{Background, Camera, Light, Model, Projection, Scene, Shading};
+use pellucid::scene::{Background, Camera, Effects, Light, Model, Projection, Scene, Shading};
 use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
 use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
 use proptest::prelude::*;
@@ -158,7 +158,7 @@ proptest! {
         tolerance in prop_oneof![Just(1.0 / 255.0), Just(1e-3), Just(1e-4)],
     ) {
         let camera = camera(volume.grid(), from, distance, parallel);
-        let scene = Scene { model: Model::Light, transfer_function, shading: None, camera, background: Background::Transparent };
+        let scene = Scene { model: Model::Light, transfer_function, shading: None, camera, background: Background::Transparent, effects: Effects::default() };
         held_to_tolerance_and_bound(&volume, &scene, tolerance)?;
     }
 }
@@ -176,7 +176,7 @@ proptest! {
         tolerance in prop_oneof![Just(1.0 / 255.0), Just(1e-3)],
     ) {
         let camera = camera(volume.grid(), from, distance, false);
-        let scene = Scene { model: Model::Light, transfer_function, shading: Some(shading), camera, background: Background::Transparent };
+        let scene = Scene { model: Model::Light, transfer_function, shading: Some(shading), camera, background: Background::Transparent, effects: Effects::default() };
         held_to_tolerance_and_bound(&volume, &scene, tolerance)?;
     }
 }

@@ -7,10 +7,12 @@
 //! [transfer function](crate::transfer); shading multiplies `q`. Colour is linear and premultiplied.
 
 mod camera;
+mod effects;
 mod model;
 mod shading;
 
 pub use camera::{Camera, Projection, Ray};
+pub use effects::{ClassifyAt, Clip, DepthCue, Effects, Fog, FogLaw, HalfSpace, Haze, Scattering, Shadows};
 pub use model::{Model, Surface, ValueModel, ValueOf};
 pub use shading::{Light, Shading};
 
@@ -29,6 +31,8 @@ pub struct Scene {
     pub camera: Camera,
     /// Light behind the volume.
     pub background: Background,
+    /// What it asks for beyond that.
+    pub effects: Effects,
 }
 
 /// The light behind the volume.

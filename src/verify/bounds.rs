@@ -7,7 +7,7 @@ use super::report::Check;
 use crate::error::Result;
 use crate::integrate::exact::{Precision, Traced, tracer};
 use crate::oracle::Oracle;
-use crate::scene::{Background, Camera, Light, Model, Projection, Scene, Shading};
+use crate::scene::{Background, Camera, Effects, Light, Model, Projection, Scene, Shading};
 use crate::synthetic::{self, HeadPhantom};
 use crate::transfer::shapes::{Shape, extinction_per_mm};
 use crate::transfer::{Optics, Term, TransferFunction};
@@ -115,6 +115,7 @@ fn scene(volume: &Volume, by_gradient: bool, shading: Option<Shading>) -> Result
         shading,
         camera: nobody_looks(volume)?,
         background: Background::Transparent,
+        effects: Effects::default(),
     })
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::error::Result;
-use crate::scene::{Background, Camera, Model, Projection, Scene};
+use crate::scene::{Background, Camera, Effects, Model, Projection, Scene};
 use crate::transfer::{Curve, Knot, Optics, Term, TransferFunction};
 use crate::volume::{Grid, Quantity, Rescale, Samples, Volume};
 
@@ -79,7 +79,14 @@ pub(super) fn looking(
     let eye = center + from_mm * direction.normalize();
     let projection = Projection::Parallel { height_mm };
     let camera = Camera::look_at(eye, eye + direction, DVec3::Z, projection, [size; 2])?;
-    Ok(Scene { model: Model::Light, transfer_function, shading: None, camera, background: Background::Transparent })
+    Ok(Scene {
+        model: Model::Light,
+        transfer_function,
+        shading: None,
+        camera,
+        background: Background::Transparent,
+        effects: Effects::default(),
+    })
 }
 
 /// The rays of a scene's picture, row by row.

@@ -1,7 +1,7 @@
 //! Transfer functions of the table, and the scenes they are used in.
 
 use glam::DVec3;
-use pellucid::scene::{Background, Camera, Light, Model, Projection, Scene, Shading};
+use pellucid::scene::{Background, Camera, Effects, Light, Model, Projection, Scene, Shading};
 use pellucid::transfer::shapes::{Shape, extinction_per_mm};
 use pellucid::transfer::{Optics, TransferFunction};
 use pellucid::volume::Quantity;
@@ -134,7 +134,14 @@ pub(crate) fn scene(volume: &Volume, function: &Function, shaded: bool, size: us
     let eye = center - 4.0 * radius * towards;
     let projection = Projection::Perspective { fov_degrees: 26.0 };
     let camera = Camera::look_at(eye, center, DVec3::Z, projection, [size; 2])?;
-    Ok(Scene { model: Model::Light, transfer_function, shading, camera, background: Background::Transparent })
+    Ok(Scene {
+        model: Model::Light,
+        transfer_function,
+        shading,
+        camera,
+        background: Background::Transparent,
+        effects: Effects::default(),
+    })
 }
 
 fn shading(soft_gradient_per_mm: f64) -> Shading {

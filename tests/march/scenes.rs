@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 use pellucid::integrate::{Rendered, render};
 use pellucid::plan::{Colors, Emission, Lattice, March, Method, Order, SampleRule};
-use pellucid::scene::{Background, Camera, Light, Model, Projection, Scene, Shading};
+use pellucid::scene::{Background, Camera, Effects, Light, Model, Projection, Scene, Shading};
 use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
 use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
 
@@ -111,7 +111,14 @@ pub(crate) fn oblique(grid: &Grid, projection: Projection) -> Camera {
 /// A scene without a background, seen by a perspective camera.
 pub(crate) fn scene(volume: &Volume, transfer_function: TransferFunction, shading: Option<Shading>) -> Scene {
     let camera = oblique(volume.grid(), Projection::Perspective { fov_degrees: 20.0 });
-    Scene { model: Model::Light, transfer_function, shading, camera, background: Background::Transparent }
+    Scene {
+        model: Model::Light,
+        transfer_function,
+        shading,
+        camera,
+        background: Background::Transparent,
+        effects: Effects::default(),
+    }
 }
 
 /// Renders by marching.

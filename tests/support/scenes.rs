@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "used as modules need it")]
 
 use glam::{DAffine3, DMat3, DVec3};
-use pellucid::scene::{Background, Camera, Light, Model, Projection, Ray, Scene, Shading};
+use pellucid::scene::{Background, Camera, Effects, Light, Model, Projection, Ray, Scene, Shading};
 use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
 use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
 
@@ -84,7 +84,14 @@ pub(crate) fn function(terms: Vec<Term>) -> TransferFunction {
 pub(crate) fn scene(transfer_function: TransferFunction) -> Scene {
     let projection = Projection::Parallel { height_mm: 1.0 };
     let camera = Camera::look_at(DVec3::NEG_Y, DVec3::ZERO, DVec3::Z, projection, [1, 1]).expect("a valid camera");
-    Scene { model: Model::Light, transfer_function, shading: None, camera, background: Background::Transparent }
+    Scene {
+        model: Model::Light,
+        transfer_function,
+        shading: None,
+        camera,
+        background: Background::Transparent,
+        effects: Effects::default(),
+    }
 }
 
 /// The same scene, shaded.
@@ -193,5 +200,6 @@ pub(crate) fn scene_around(volume: &Volume, terms: Vec<Term>, shading: Option<Sh
         shading,
         camera,
         background: Background::Transparent,
+        effects: Effects::default(),
     }
 }

@@ -1,63 +1,9 @@
-//! Effects as written: what a scene asks for beyond emission and absorption.
+//! Shading and its lights.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Color;
-
-/// Effects; one that is not named is not computed.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct EffectsSpec {
-    /// Levoy's gradient shading with the Blinn-Phong reflection.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shading: Option<ShadingSpec>,
-    /// Shows one number of the values along each ray as a grey, instead of light.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub project: Option<ProjectSpec>,
-    /// Shows level surfaces, instead of light.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1))]
-    pub surfaces: Option<Vec<SurfaceSpec>>,
-}
-
-/// One number of the values along each ray, as a grey; see [`crate::scene::ValueModel`] for its definition.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ProjectSpec {
-    /// Which number.
-    pub show: ProjectionOf,
-    /// Values shown black and white, HU, the lower first; the window of `normalise` by default.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub window_hu: Option<[f64; 2]>,
-}
-
-/// A number of the values along a ray.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ProjectionOf {
-    /// The largest: maximum intensity projection.
-    Maximum,
-    /// The smallest: minimum intensity projection.
-    Minimum,
-    /// The mean over the length in the volume.
-    Mean,
-}
-
-/// A level surface; see [`crate::scene::Surface`] for its definition.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceSpec {
-    /// The level, HU.
-    pub hu: f64,
-    /// Opacity of one crossing; 1 by default.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 1))]
-    pub opacity: Option<f64>,
-    /// Its colour; white by default.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub color: Option<Color>,
-}
+use crate::spec::Color;
 
 /// Shading by the gradient; see [`crate::scene::Shading`] for its definition.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,0 +1,48 @@
+//! Effects beyond emission and absorption: what each is, exact in f64. A scene has none unless it asks for it.
+
+mod clip;
+mod depth_cue;
+mod fog;
+mod haze;
+mod scattering;
+mod shadows;
+
+pub use clip::{Clip, HalfSpace};
+pub use depth_cue::DepthCue;
+pub use fog::{Fog, FogLaw};
+pub use haze::Haze;
+pub use scattering::Scattering;
+pub use shadows::Shadows;
+
+/// What a scene asks for beyond emission and absorption; nothing by default.
+///
+/// They apply in this order. What is outside `clip` neither absorbs nor emits. At each point that is left, the transfer
+/// function's emission is shaded, its lit terms dimmed by `depth_cue` and `shadows`; `scattering` replaces its share of the
+/// emission; `fog` mixes in its colour; `haze` adds a medium of its own.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Effects {
+    /// The part of space that is shown.
+    pub clip: Clip,
+    /// Where the transfer function is evaluated.
+    pub classify: ClassifyAt,
+    /// Levoy's dimming of lit terms with distance.
+    pub depth_cue: Option<DepthCue>,
+    /// Shadows towards directional lights.
+    pub shadows: Option<Shadows>,
+    /// Light scattered once.
+    pub scattering: Option<Scattering>,
+    /// Fog as OpenGL defines it.
+    pub fog: Option<Fog>,
+    /// Fog as a medium.
+    pub haze: Option<Haze>,
+}
+
+/// Where the transfer function is evaluated, and what is then interpolated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ClassifyAt {
+    /// At each point, from the interpolated value and gradient magnitude (post-classification).
+    #[default]
+    Samples,
+    /// At the lattice points, shaded there too; extinction and emission are interpolated (Levoy 1988).
+    Voxels,
+}
