@@ -29,6 +29,7 @@ fn volume() -> VolumeInfo {
         storage: Storage::I16,
         value_range: [-1000.0, 1800.0],
         quantity: Quantity::Hu,
+        reading_bytes: 2 * 64 * 48 * 33,
     }
 }
 

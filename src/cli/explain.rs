@@ -1,7 +1,7 @@
 //! `pellucid explain`: the plan of a pipeline, in words or as JSON.
 
 use pellucid::Result;
-use pellucid::pipeline::{self, Options};
+use pellucid::pipeline;
 use pellucid::plan::{explain, explain_json};
 use pellucid::spec::Spec;
 
@@ -22,8 +22,9 @@ impl Explain {
     /// Prints the plan; reads the scan, since a plan is for one volume, and renders nothing.
     pub(super) fn run(&self) -> Result<()> {
         let spec = Spec::load(&self.pipeline.pipeline, &self.pipeline.overrides())?;
-        let scan = pipeline::load(&spec)?;
-        let plan = pipeline::plan(&spec, &scan, &Options::default())?;
+        let options = self.pipeline.options(None);
+        let scan = pipeline::load(&spec, &options)?;
+        let plan = pipeline::plan(&spec, &scan, &options)?;
         match self.format {
             Format::Text => stdout::print(&explain(&plan)),
             Format::Json => stdout::print_json(&explain_json(&plan)),

@@ -19,7 +19,9 @@ mod verify;
 
 use std::path::PathBuf;
 
+use bytesize::ByteSize;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use pellucid::pipeline::Options;
 use pellucid::{Error, Fault, Result};
 
 /// CT volume rendering with a known error: a scan and a YAML pipeline in, a picture within a tolerance out.
@@ -81,6 +83,10 @@ struct PipelineArguments {
     /// Size of the picture in pixels, short for `--set image.size=[W,H]`
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
+
+    /// Most memory to take, such as 4GB or 512MiB; 80 % of what is free unless told
+    #[arg(long, value_name = "BYTES")]
+    max_memory: Option<ByteSize>,
 }
 
 impl PipelineArguments {
@@ -88,6 +94,11 @@ impl PipelineArguments {
     fn overrides(&self) -> Vec<String> {
         let size = self.size.map(|[w, h]| format!("image.size=[{w}, {h}]"));
         self.set.iter().cloned().chain(size).collect()
+    }
+
+    /// What is not written in the pipeline.
+    fn options(&self, output: Option<PathBuf>) -> Options {
+        Options { output, max_memory_bytes: self.max_memory.map(|most| most.as_u64()) }
     }
 }
 

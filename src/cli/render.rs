@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use pellucid::Result;
-use pellucid::pipeline::{self, Options, Outcome};
+use pellucid::pipeline::{self, Outcome};
 use pellucid::spec::Spec;
 
 use super::progress::Bar;
@@ -31,7 +31,7 @@ impl Render {
         overrides.extend(self.certify.map(|count| format!("certify={count}")));
         let spec = Spec::load(&self.pipeline.pipeline, &overrides)?;
         let bar = Bar::new(global.quiet);
-        let options = Options { output: self.output.clone() };
+        let options = self.pipeline.options(self.output.clone());
         let outcome = pipeline::run(&spec, &options, &|event| bar.hear(event));
         bar.clear();
         let outcome = outcome?;

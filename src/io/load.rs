@@ -23,15 +23,16 @@ const UNSUPPORTED: [(&str, &str); 8] = [
     ("raw", "samples without a header"),
 ];
 
-/// Reads a scan: a folder or file of DICOM, or NRRD. `series` matters for DICOM only.
+/// Reads a scan: a folder or file of DICOM, or NRRD. `series` matters for DICOM only. `max_bytes` is the most memory that
+/// reading may take; it is checked before anything is allocated for samples.
 ///
 /// # Errors
 /// `Fault::Input` for a path that is missing or unreadable, `Fault::Unsupported` for a format that is not read here, and
-/// whatever the reader finds.
-pub fn load(path: &Path, series: &SeriesChoice) -> Result<Scan> {
+/// whatever the reader finds; `Fault::Limit` for more than `max_bytes`.
+pub fn load(path: &Path, series: &SeriesChoice, max_bytes: Option<u64>) -> Result<Scan> {
     match format_of(path)? {
-        Format::Dicom => dicom::read(path, series, None),
-        Format::Nrrd => nrrd::read(path),
+        Format::Dicom => dicom::read(path, series, max_bytes),
+        Format::Nrrd => nrrd::read_within(path, max_bytes),
     }
 }
 
@@ -132,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_misspelt_path_is_answered_with_the_nearest_name() {
-        let error = load(&source("volum/grid.rs"), &SeriesChoice::default()).expect_err("no such path");
+        let error = load(&source("volum/grid.rs"), &SeriesChoice::default(), None).expect_err("no such path");
         assert_eq!(error.fault(), Fault::Input);
         let remedy = error.remedy_text().unwrap_or_default();
         assert!(remedy.contains("volume"), "should suggest src/volume, found: {remedy}");

@@ -28,6 +28,8 @@ pub struct Scan {
     pub warnings: Vec<String>,
     /// What became of each file.
     pub files: Vec<FileFate>,
+    /// Most bytes held while it was read, the volume's included, estimated.
+    pub reading_bytes: u64,
 }
 
 /// What became of a file that a reader was shown.

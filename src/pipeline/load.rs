@@ -1,6 +1,7 @@
 //! The scan that a spec names.
 
-use crate::error::Result;
+use super::{Options, memory};
+use crate::error::{Error, Fault, Result};
 use crate::io::{self, Scan, dicom::SeriesChoice};
 use crate::spec::{PhantomHead, PhantomSpec, Series, Spec, VolumeSource};
 use crate::synthetic::{self, HeadPhantom};
@@ -8,11 +9,11 @@ use crate::synthetic::{self, HeadPhantom};
 /// Reads or makes the volume of a spec, its values understood as the spec says.
 ///
 /// # Errors
-/// As [`io::load`] and [`synthetic::head`].
-pub fn load(spec: &Spec) -> Result<Scan> {
+/// As [`io::load`] and [`synthetic::head`]; `Fault::Limit` for a scan that takes more memory than the options allow.
+pub fn load(spec: &Spec, options: &Options) -> Result<Scan> {
     let scan = match spec.volume_source() {
-        VolumeSource::File { path, series } => io::load(&path, &choice(series))?,
-        VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head)?,
+        VolumeSource::File { path, series } => io::load(&path, &choice(series), memory::limit_bytes(options))?,
+        VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head, memory::limit_bytes(options))?,
     };
     Ok(Scan { volume: spec.interpret(scan.volume), ..scan })
 }
@@ -24,7 +25,7 @@ fn choice(series: Option<Series>) -> SeriesChoice {
     }
 }
 
-fn phantom(head: &PhantomHead) -> Result<Scan> {
+fn phantom(head: &PhantomHead, max_bytes: Option<u64>) -> Result<Scan> {
     let default = HeadPhantom::default();
     let head = HeadPhantom {
         size: head.size.map_or(default.size, |size| size as usize),
@@ -37,5 +38,14 @@ fn phantom(head: &PhantomHead) -> Result<Scan> {
         ("noise", format!("{} HU", head.noise_hu)),
     ];
     let facts = facts.map(|(label, text)| (label.to_string(), text)).to_vec();
-    Ok(Scan { volume: synthetic::head(&head)?, facts, warnings: Vec::new(), files: Vec::new() })
+    let reading_bytes = head.making_bytes()?;
+    if let Some(most) = max_bytes.filter(|&most| reading_bytes > most) {
+        return Err(Error::new(Fault::Limit, "the phantom does not fit into memory")
+            .element("volume.phantom.head.size")
+            .found(format!("{reading_bytes} bytes for {} voxels along x and y", head.size))
+            .expected(format!("at most {most} bytes"))
+            .remedy("ask for a smaller size, or raise --max-memory"));
+    }
+    let volume = synthetic::head(&head)?;
+    Ok(Scan { volume, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes })
 }

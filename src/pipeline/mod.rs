@@ -5,6 +5,7 @@ mod clip;
 mod digest;
 mod load;
 mod measure;
+pub mod memory;
 mod sidecar;
 
 use std::fs;
@@ -31,6 +32,8 @@ use sidecar::Made;
 pub struct Options {
     /// The picture's file, relative to the working directory; that of the pipeline by default.
     pub output: Option<PathBuf>,
+    /// Most bytes of memory to hold; 80 % of what is free by default.
+    pub max_memory_bytes: Option<u64>,
 }
 
 /// How far a run is.
@@ -61,12 +64,14 @@ pub struct Outcome {
 /// Renders a pipeline and writes the picture with its sidecar, each whole or not at all.
 ///
 /// # Errors
-/// Those of each stage; nothing is written if one fails before the picture is complete. `Fault::Tolerance` if the picture
+/// Those of each stage; nothing is written if one fails before the picture is complete. `Fault::Limit` before anything
+/// is allocated that would not fit into memory. `Fault::Tolerance` if the picture
 /// was certified and found not to be within its tolerance; then it and its sidecar are there to be looked at.
 pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Outcome> {
     let mut stopwatch = Stopwatch::start(progress);
-    let scan = stopwatch.time("load", || load(spec))?;
+    let scan = stopwatch.time("load", || load(spec, options))?;
     let plan = stopwatch.time("plan", || plan(spec, &scan, options))?;
+    memory::check(&plan, options)?;
     let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
     prepare_folder(&plan.output.path)?;
     let rendered = stopwatch.time("integrate", || integrate(&scan, &plan, progress))?;
@@ -87,7 +92,8 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
 /// # Errors
 /// As [`Plan::new`], and `Fault::Spec` for a picture whose suffix names no format.
 pub fn plan(spec: &Spec, scan: &Scan, options: &Options) -> Result<Plan> {
-    Plan::new(spec, &VolumeInfo::from(&scan.volume), options.output.as_deref())
+    let info = VolumeInfo { reading_bytes: scan.reading_bytes, ..VolumeInfo::from(&scan.volume) };
+    Plan::new(spec, &info, options.output.as_deref())
 }
 
 fn integrate(scan: &Scan, plan: &Plan, progress: Progress<'_>) -> Result<Rendered> {

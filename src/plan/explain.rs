@@ -15,7 +15,8 @@ pub fn explain(plan: &Plan) -> String {
     for stage in &plan.stages {
         line(&mut text, stage.name, &format!("{:width$}  {:>9}", stage.what, bytes(stage.bytes)));
     }
-    line(&mut text, "memory", &bytes(plan.memory_bytes()));
+    let (when, most) = plan.peak();
+    line(&mut text, "memory", &format!("{} at peak, while {when}", bytes(most)));
     text.push('\n');
     line(&mut text, "layers", &plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + "));
     line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
@@ -126,6 +127,7 @@ pub fn explain_json(plan: &Plan) -> Value {
     json!({
         "stages": plan.stages,
         "memory_bytes": plan.memory_bytes(),
+        "memory_peak_while": plan.peak().0,
         "transfer_function": {
             "window": tf.window(),
             "gradient_range_per_mm": tf.gradient_range_per_mm(),

@@ -47,6 +47,8 @@ pub struct Plan {
     pub output: Output,
     /// How many random pixels the oracle recomputes.
     pub certify: Option<usize>,
+    /// Most bytes held while the scan was read.
+    pub reading_bytes: u64,
     /// What is computed, in order.
     pub stages: Vec<Stage>,
     /// What is not computed, and why.
@@ -89,6 +91,7 @@ impl Plan {
             demand,
             output,
             certify: spec.pipeline.certify.map(|pixels| pixels as usize),
+            reading_bytes: volume.reading_bytes,
             stages: Vec::new(),
             not_computed: Vec::new(),
             warnings: Vec::new(),
@@ -99,8 +102,25 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Bytes in memory, estimated: the sum over the stages.
+    /// Bytes on the heap at peak, estimated; the program and its threads' stacks take some 10 MB beside it.
     pub fn memory_bytes(&self) -> u64 {
-        self.stages.iter().map(|stage| stage.bytes).sum()
+        self.peak().1
+    }
+
+    /// What is going on when most memory is held, and how many bytes that is: while the scan is read; while it is
+    /// rendered, from volume and fields into pixels; or while these are encoded, when the fields are gone.
+    pub fn peak(&self) -> (&'static str, u64) {
+        let of = |names: &[&str]| -> u64 {
+            self.stages.iter().filter(|stage| names.contains(&stage.name)).map(|stage| stage.bytes).sum()
+        };
+        let rendering = of(&["volume", "field", "classify", "integrate"]);
+        let writing = of(&["volume", "integrate", "image"]);
+        let phases = [("reading the scan", self.reading_bytes), ("rendering", rendering), ("writing", writing)];
+        phases.into_iter().max_by_key(|(_, bytes)| *bytes).unwrap_or_default()
+    }
+
+    /// Bytes of the samples.
+    pub fn volume_bytes(&self) -> u64 {
+        self.stages.iter().filter(|stage| stage.name == "volume").map(|stage| stage.bytes).sum()
     }
 }

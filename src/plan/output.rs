@@ -57,6 +57,14 @@ impl Format {
         }
     }
 
+    /// Bytes that the encoder holds whatever the size of the picture, as measured.
+    pub(super) fn encoder_bytes(self) -> u64 {
+        match self {
+            Format::Png8 | Format::Png16 => 460_000,
+            Format::Exr => 0,
+        }
+    }
+
     /// Bytes per pixel before compression.
     pub(super) fn bytes_per_pixel(self) -> u64 {
         match self {

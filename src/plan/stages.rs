@@ -58,7 +58,7 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     stages.push(Stage {
         name: "image",
         what: plan.output.format.describe().to_owned(),
-        bytes: plan.output.format.bytes_per_pixel() * pixels,
+        bytes: plan.output.format.bytes_per_pixel() * pixels + plan.output.format.encoder_bytes(),
     });
     if let Some(pixels) = plan.certify {
         stages.push(Stage { name: "oracle", what: format!("{pixels} random pixels again in f64"), bytes: 0 });

@@ -13,6 +13,8 @@ pub struct VolumeInfo {
     pub value_range: [f64; 2],
     /// What the values measure.
     pub quantity: Quantity,
+    /// Most bytes held while it was read.
+    pub reading_bytes: u64,
 }
 
 /// How samples are stored in memory.
@@ -58,6 +60,12 @@ impl From<&Volume> for VolumeInfo {
             Samples::I16(_) => Storage::I16,
             Samples::F32(_) => Storage::F32,
         };
-        VolumeInfo { grid: *volume.grid(), storage, value_range: volume.value_range(), quantity: volume.quantity() }
+        VolumeInfo {
+            grid: *volume.grid(),
+            storage,
+            value_range: volume.value_range(),
+            quantity: volume.quantity(),
+            reading_bytes: storage.bytes() * volume.grid().voxel_count() as u64,
+        }
     }
 }

@@ -62,6 +62,16 @@ impl Default for HeadPhantom {
     }
 }
 
+impl HeadPhantom {
+    /// Most bytes held while it is made: its voxels, and the shapes of its anatomy.
+    ///
+    /// # Errors
+    /// As [`head`].
+    pub fn making_bytes(&self) -> Result<u64> {
+        Ok(2 * head_grid(self.size)?.voxel_count() as u64 + 1_450_000)
+    }
+}
+
 /// A CT angiogram of a head, 240 × 240 × 280 mm, in HU.
 ///
 /// The origin lies between the ear canals, with z = 0 through them and the lower rims of the orbits (Frankfort plane);

@@ -34,7 +34,7 @@ pub(crate) fn sources(data: &Path, skull: Option<&Path>) -> Vec<Source> {
 impl Source {
     /// The volume, in HU or declared to be something else.
     pub(crate) fn load(&self) -> Result<Volume> {
-        let volume = load(&self.path, &SeriesChoice::Largest)?.volume;
+        let volume = load(&self.path, &SeriesChoice::Largest, None)?.volume;
         let Rescale { slope, intercept } = volume.rescale();
         Ok(match self.shift {
             Some(shift) => {

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use pellucid::Result;
 use pellucid::io::dicom::{Folder, SeriesChoice, scan_folder};
 use pellucid::io::{self, load};
+use pellucid::pipeline::{Options, memory};
 
 use super::{Format, stdout};
 use report::Report;
@@ -33,7 +34,7 @@ impl Info {
     pub(super) fn run(&self) -> Result<()> {
         let folder = self.folder()?;
         let choice = self.series.clone().map_or(SeriesChoice::Largest, SeriesChoice::Named);
-        let scan = load(&self.path, &choice);
+        let scan = load(&self.path, &choice, memory::limit_bytes(&Options::default()));
         let report = Report::new(folder.as_ref(), scan.as_ref().ok());
         match self.format {
             Format::Text => stdout::print(&text::of(&report, scan.as_ref().ok()))?,

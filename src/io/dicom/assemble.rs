@@ -22,14 +22,20 @@ pub(super) struct Assembled {
     /// Slope and intercept as the files give them, for people.
     pub(super) rescale_text: String,
     pub(super) warnings: Vec<String>,
+    /// Most bytes held while the pixels were read, estimated.
+    pub(super) reading_bytes: u64,
 }
+
+/// Bytes per pixel that a thread holds while it reads a slice: the file, and what a decoder makes of it; as measured.
+const PLAIN_BYTES_PER_PIXEL: usize = 2;
+const DECODER_BYTES_PER_PIXEL: usize = 7;
 
 /// Reads the pixels of a series, whose slices are given in order along k.
 ///
 /// # Errors
 /// `Fault::Limit` if the volume would exceed `max_bytes` or memory; else as the pixels of the first bad slice say.
 pub(super) fn assemble(series: &Series, slices: &[Slice], max_bytes: Option<u64>) -> Result<Assembled> {
-    let frame_len = check_sizes(series, slices, max_bytes)?;
+    let (frame_len, reading_bytes) = check_sizes(series, slices, max_bytes)?;
     let mut buffer = zeroed(series, frame_len * slices.len())?;
     let decoded = decode_all(slices, buffer.chunks_exact_mut(frame_len))?;
     let planes: Vec<Plane> = slices
@@ -49,11 +55,11 @@ pub(super) fn assemble(series: &Series, slices: &[Slice], max_bytes: Option<u64>
     };
     let warnings = warnings(&planes, lowest);
     let (samples, rescale) = store(buffer, frame_len, &planes, lowest);
-    Ok(Assembled { samples, rescale, rescale_text: rescale_text(slices), warnings })
+    Ok(Assembled { samples, rescale, rescale_text: rescale_text(slices), warnings, reading_bytes })
 }
 
-/// Samples of one slice, if those of all can be held.
-fn check_sizes(series: &Series, slices: &[Slice], max_bytes: Option<u64>) -> Result<usize> {
+/// Samples of one slice, if those of all can be held, and the most bytes that are held on the way.
+fn check_sizes(series: &Series, slices: &[Slice], max_bytes: Option<u64>) -> Result<(usize, u64)> {
     let [columns, rows, count] = series.dims;
     let varies = slices.iter().any(|slice| slice.frame().rescale != slices[0].frame().rescale);
     // Values of slices whose rescale differs may need f32 beside the 16-bit slots they come from.
@@ -63,7 +69,10 @@ fn check_sizes(series: &Series, slices: &[Slice], max_bytes: Option<u64>) -> Res
     let (Some(frame_len), Some(bytes)) = (frame_len, bytes) else {
         return Err(too_large(series, "more bytes than there are addresses".to_owned(), max_bytes));
     };
-    if max_bytes.is_some_and(|most| bytes as u64 > most) {
+    let plain = slices.iter().all(|slice| transfer_syntax::is_plain(&slice.file().transfer_syntax_uid));
+    let per_pixel = if plain { PLAIN_BYTES_PER_PIXEL } else { DECODER_BYTES_PER_PIXEL };
+    let bytes = bytes as u64 + (rayon::current_num_threads() * per_pixel * frame_len) as u64;
+    if max_bytes.is_some_and(|most| bytes > most) {
         return Err(too_large(series, format!("{bytes} bytes"), max_bytes));
     }
     for slice in slices {
@@ -81,7 +90,7 @@ fn check_sizes(series: &Series, slices: &[Slice], max_bytes: Option<u64>) -> Res
                 .remedy("copy the file again; it was cut short"));
         }
     }
-    Ok(frame_len)
+    Ok((frame_len, bytes))
 }
 
 fn too_large(series: &Series, found: String, max_bytes: Option<u64>) -> Error {

@@ -67,7 +67,7 @@ pub fn read_header(path: &Path) -> Result<(Header, Vec<String>)> {
 /// As [`read_header`]; also `Fault::Input` for data that is missing, damaged, too short or too long, and
 /// `Fault::Limit` if there is not enough memory.
 pub fn read_array(path: &Path) -> Result<Array> {
-    read::array(path)
+    read::array(path, None)
 }
 
 /// Reads a volume of scalars: three spatial axes, and others only if they have one sample.
@@ -79,15 +79,24 @@ pub fn read_array(path: &Path) -> Result<Array> {
 /// As [`read_array`]; also `Fault::Unsupported` for an array that is no such volume, and `Fault::Geometry` for one
 /// whose place in the patient cannot be known.
 pub fn read(path: &Path) -> Result<Scan> {
+    read_within(path, None)
+}
+
+/// The same, if reading takes at most `max_bytes` of memory.
+///
+/// # Errors
+/// As [`read`]; also `Fault::Limit` for more than `max_bytes`, before anything is allocated for elements.
+pub fn read_within(path: &Path, max_bytes: Option<u64>) -> Result<Scan> {
     // The header comes first by itself: whatever it rules out need not be read.
     let (header, _) = read_header(path)?;
     let mut assumptions = Vec::new();
     let grid = orientation::grid(&header, &mut assumptions).map_err(|error| error.at(path))?;
-    let Array { header, elements, mut warnings, files } = read_array(path)?;
+    let Array { header, elements, mut warnings, files } = read::array(path, max_bytes)?;
+    let reading_bytes = read::most_bytes(&header);
     warnings.append(&mut assumptions);
     let (samples, rescale) = storage::samples(elements, &mut warnings).map_err(|error| error.at(path))?;
     let volume = Volume::new(grid, samples, rescale, quantity(header.element_type)).map_err(|error| error.at(path))?;
-    Ok(Scan { facts: facts(&header, &volume, files.len()), volume, warnings, files })
+    Ok(Scan { facts: facts(&header, &volume, files.len()), volume, warnings, files, reading_bytes })
 }
 
 fn quantity(element_type: ElementType) -> Quantity {

@@ -8,7 +8,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use super::elements::{Element, Elements, with_elements};
-use super::encoding::{Encoding, Endian};
+use super::encoding::{ElementType, Encoding, Endian};
 use super::header::Header;
 use super::source::{Place, Source, long, short};
 use super::{Array, parse};
@@ -51,9 +51,30 @@ pub(super) fn header(path: &Path) -> Result<(Header, Vec<String>, u64)> {
     }
 }
 
+/// Bytes that one byte of deflated data stands for at most (zlib's technical details).
+const MOST_INFLATED: u64 = 1032;
+
+/// Most bytes held while the elements become samples, estimated: the elements, and 16-bit samples beside those of
+/// another size.
+pub(super) fn most_bytes(header: &Header) -> u64 {
+    let count = header.element_count().map_or(u64::MAX, |n| n as u64);
+    let element = header.element_type.bytes() as u64;
+    let beside =
+        if matches!(header.element_type, ElementType::F32 | ElementType::I16 | ElementType::U16) { 0 } else { 2 };
+    count.saturating_mul(element + beside)
+}
+
 /// Reads a header and all elements.
-pub(super) fn array(path: &Path) -> Result<Array> {
+pub(super) fn array(path: &Path, max_bytes: Option<u64>) -> Result<Array> {
     let (header, warnings, data_start) = header(path)?;
+    if let Some(most) = max_bytes.filter(|&most| most_bytes(&header) > most) {
+        return Err(Error::new(Fault::Limit, "the volume does not fit into memory")
+            .at(path)
+            .element(format!("{} of {}", header.shape(), header.element_type.name()))
+            .found(format!("{} bytes", most_bytes(&header)))
+            .expected(format!("at most {most} bytes"))
+            .remedy("crop the volume, or raise the limit on memory with --max-memory"));
+    }
     let sizes: Vec<usize> = header.axes.iter().map(|axis| axis.size).collect();
     let count = header.element_count()?;
     let division = header.data_file.division(&sizes, count).map_err(|error| error.at(path))?;
@@ -68,6 +89,13 @@ pub(super) fn array(path: &Path) -> Result<Array> {
         // Every file is there and has its exact size before memory is taken for all of them.
         (0..division.files).try_for_each(|index| place(index).open(&header, piece.bytes()).map(drop))?;
         with_elements!(&mut elements, values => make_room(values, count, count))?;
+    } else if header.encoding == Encoding::Gzip {
+        let compressed = |index| std::fs::metadata(place(index).path).map_or(0, |file| file.len());
+        let most = (0..division.files).map(compressed).sum::<u64>().saturating_mul(MOST_INFLATED);
+        // A vector that grows holds itself twice for a while; this one need not, if the files can hold what they claim.
+        if most >= (count * header.element_type.bytes()) as u64 {
+            with_elements!(&mut elements, values => make_room(values, count, count))?;
+        }
     }
     for index in 0..division.files {
         let place = place(index);
