@@ -1,7 +1,7 @@
 //! From what a plan says to the types of a kernel, once per frame.
 
 use super::empty_space::EmptySpace;
-use super::march::Kernel;
+use super::march::{Classified, Kernel};
 use super::shade::{Lit, Shader, Unlit};
 use super::{Frame, KernelName, Rendered, Statistics};
 use crate::classify::{Baked, Classifier, bake};
@@ -54,8 +54,8 @@ fn run<V: Voxel, C: Classifier<f32>, S: Shader>(
         let magnitudes = magnitude.as_ref().map(Macrocells::new);
         EmptySpace::new(&Macrocells::new(&field), magnitudes.as_ref(), classifier)
     });
-    let kernel = Kernel { field, magnitude, units, classifier, shader, empty_space };
-    let (image, tally) = kernel.render(frame, settings);
+    let medium = Classified { field, magnitude, units, classifier, shader };
+    let (image, tally) = Kernel { medium: &medium, empty_space }.render(frame, settings);
     let name = KernelName { method: "march", voxel: V::NAME, reads_gradient: C::READS_GRADIENT, shader: S::NAME };
     let statistics =
         Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel: name.to_string() };

@@ -1,27 +1,26 @@
-//! A transfer function along a segment: which pieces there are, and the polynomials on each.
+//! What absorbs and emits along a segment: which pieces there are, and the polynomials on each.
 
 use crate::classify::{Axis, Bilinear, Classifier, Linear, OneD, TwoD};
+use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, elevate, product, range, restrict};
 use crate::math::{Real, each};
 
 use super::cells::Segment;
-use super::lattice::{along, magnitudes};
+use super::lattice::{Lattice, along, magnitudes};
 use super::piece::{Integral, Optics};
 use super::shade::Shader;
 use super::splits::Splits;
 
-/// What absorbs and emits along a ray, by a baked transfer function.
-pub(super) trait Medium<R: Real>: Classifier<R> {
-    /// The scalar fields along a segment: cubics.
+/// What absorbs and emits along a ray. It reads of a cell what it needs, and nothing else.
+pub(super) trait Medium<R: Real>: Sync {
+    /// The fields along a segment: cubics.
     type Fields;
 
-    /// The fields along a segment, or `None` if nothing absorbs or emits there. `gradients` gives those at the corners.
-    fn fields(
-        &self,
-        stored: &[R; 8],
-        segment: &Segment,
-        gradients: impl FnOnce() -> [[R; 8]; 3],
-    ) -> Option<Self::Fields>;
+    /// The fields along a segment, or `None` if nothing absorbs or emits there.
+    fn fields(&self, segment: &Segment) -> Option<Self::Fields>;
+
+    /// The gradient along a segment, HU/mm; asked for by shaders that read it.
+    fn gradient(&self, fields: &Self::Fields, segment: &Segment) -> [Cubic<R>; 3];
 
     /// Cuts the segment where a field crosses a knot.
     fn cut(&self, fields: &Self::Fields, splits: &mut Splits<R>);
@@ -38,22 +37,35 @@ pub(super) trait Medium<R: Real>: Classifier<R> {
     ) -> Option<Integral<R>>;
 }
 
-impl<R: Real> Medium<R> for OneD<R> {
+/// A scalar lattice, classified at each point by a baked transfer function.
+#[derive(Debug, Clone)]
+pub(super) struct Classified<'a, V, C> {
+    pub(super) lattice: Lattice<'a, V>,
+    pub(super) classifier: C,
+}
+
+impl<R: Real, V: Voxel> Medium<R> for Classified<'_, V, OneD<R>> {
     type Fields = Cubic<R>;
 
     #[inline(always)]
-    fn fields(&self, stored: &[R; 8], segment: &Segment, _: impl FnOnce() -> [[R; 8]; 3]) -> Option<Cubic<R>> {
-        let dark = |r: [R; 2]| self.is_empty(r, [R::ZERO; 2]);
-        if dark(range(stored)) {
+    fn fields(&self, segment: &Segment) -> Option<Cubic<R>> {
+        let stored = self.lattice.corners(segment.cell);
+        let dark = |r: [R; 2]| self.classifier.is_empty(r, [R::ZERO; 2]);
+        if dark(range(&stored)) {
             return None;
         }
-        let value = along(stored, segment);
+        let value = along(&stored, segment);
         (!dark(range(&value))).then_some(value)
     }
 
     #[inline(always)]
+    fn gradient(&self, _: &Cubic<R>, segment: &Segment) -> [Cubic<R>; 3] {
+        self.lattice.gradients(segment.cell).map(|c| along(&c, segment))
+    }
+
+    #[inline(always)]
     fn cut(&self, value: &Cubic<R>, splits: &mut Splits<R>) {
-        splits.cut(value, self.axis());
+        splits.cut(value, self.classifier.axis());
     }
 
     #[inline(always)]
@@ -65,11 +77,11 @@ impl<R: Real> Medium<R> for OneD<R> {
         shader: &S,
         shading: &S::Cell,
     ) -> Option<Integral<R>> {
-        let (i, dv) = within_interval(self.axis(), &restrict(value, from, to));
-        if self.are_empty(i, i) {
+        let (i, dv) = within_interval(self.classifier.axis(), &restrict(value, from, to));
+        if self.classifier.are_empty(i, i) {
             return None;
         }
-        let Linear { low, slope } = self.piece(i);
+        let Linear { low, slope } = self.classifier.piece(i);
         let channel = |c: usize| dv.map(|d| slope[c].mul_plus(d, low[c]));
         let optics = Optics { emission: [channel(0), channel(1), channel(2)], extinction: channel(3) };
         Some(if S::LIT {
@@ -80,47 +92,59 @@ impl<R: Real> Medium<R> for OneD<R> {
     }
 }
 
-impl<R: Real> Medium<R> for TwoD<R> {
-    /// Value and gradient magnitude.
-    type Fields = [Cubic<R>; 2];
+/// What a 2D transfer function reads along a segment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ValueAndMagnitude<R> {
+    value: Cubic<R>,
+    magnitude: Cubic<R>,
+    /// At the cell's corners: the magnitudes were made of them, and shading reads the same ones.
+    gradients: [[R; 8]; 3],
+}
+
+impl<R: Real, V: Voxel> Medium<R> for Classified<'_, V, TwoD<R>> {
+    type Fields = ValueAndMagnitude<R>;
 
     #[inline(always)]
-    fn fields(
-        &self,
-        stored: &[R; 8],
-        segment: &Segment,
-        gradients: impl FnOnce() -> [[R; 8]; 3],
-    ) -> Option<[Cubic<R>; 2]> {
-        let everything = [R::ZERO, self.gradients().knots()[self.gradients().intervals()]];
-        if self.is_empty(range(stored), everything) {
+    fn fields(&self, segment: &Segment) -> Option<ValueAndMagnitude<R>> {
+        let stored = self.lattice.corners(segment.cell);
+        let knots = self.classifier.gradients();
+        let everything = [R::ZERO, knots.knots()[knots.intervals()]];
+        if self.classifier.is_empty(range(&stored), everything) {
             return None;
         }
-        let value = along(stored, segment);
-        let magnitude = along(&magnitudes(&gradients()), segment);
-        (!self.is_empty(range(&value), range(&magnitude))).then_some([value, magnitude])
+        let value = along(&stored, segment);
+        let gradients = self.lattice.gradients(segment.cell);
+        let magnitude = along(&magnitudes(&gradients), segment);
+        let fields = ValueAndMagnitude { value, magnitude, gradients };
+        (!self.classifier.is_empty(range(&value), range(&magnitude))).then_some(fields)
     }
 
     #[inline(always)]
-    fn cut(&self, [value, magnitude]: &[Cubic<R>; 2], splits: &mut Splits<R>) {
-        splits.cut(value, self.values());
-        splits.cut(magnitude, self.gradients());
+    fn gradient(&self, fields: &ValueAndMagnitude<R>, segment: &Segment) -> [Cubic<R>; 3] {
+        fields.gradients.map(|c| along(&c, segment))
+    }
+
+    #[inline(always)]
+    fn cut(&self, fields: &ValueAndMagnitude<R>, splits: &mut Splits<R>) {
+        splits.cut(&fields.value, self.classifier.values());
+        splits.cut(&fields.magnitude, self.classifier.gradients());
     }
 
     #[inline(always)]
     fn integrate<S: Shader<R>>(
         &self,
-        [value, magnitude]: &[Cubic<R>; 2],
+        ValueAndMagnitude { value, magnitude, .. }: &ValueAndMagnitude<R>,
         [from, to]: [R; 2],
         length_mm: R,
         shader: &S,
         shading: &S::Cell,
     ) -> Option<Integral<R>> {
-        let (i, dv) = within_interval(self.values(), &restrict(value, from, to));
-        let (j, dg) = within_interval(self.gradients(), &restrict(magnitude, from, to));
-        if self.are_empty([i, i], [j, j]) {
+        let (i, dv) = within_interval(self.classifier.values(), &restrict(value, from, to));
+        let (j, dg) = within_interval(self.classifier.gradients(), &restrict(magnitude, from, to));
+        if self.classifier.are_empty([i, i], [j, j]) {
             return None;
         }
-        let Bilinear { low, by_value, by_gradient, by_both } = self.patch(i, j);
+        let Bilinear { low, by_value, by_gradient, by_both } = self.classifier.patch(i, j);
         let (v, g, vg) = (elevate(&dv), elevate(&dg), product(&dv, &dg));
         let channel = |c: usize| -> [R; 7] {
             each(|k| by_both[c].mul_plus(vg[k], by_gradient[c].mul_plus(g[k], by_value[c].mul_plus(v[k], low[c]))))

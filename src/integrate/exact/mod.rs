@@ -27,7 +27,7 @@ use crate::volume::{Samples, Volume};
 use super::tiles::{self, Radiance};
 use super::{Rendered, Statistics};
 use lattice::Lattice;
-use medium::Medium;
+use medium::{Classified, Medium};
 use ray::{Brightest, Frame};
 use shade::{Lit, Unlit};
 use splits::Splits;
@@ -102,7 +102,7 @@ fn for_samples<'a, V: Voxel>(
     precision: Precision,
 ) -> Box<dyn Tracer + 'a> {
     let lattice = Lattice::new(volume, samples);
-    let frame = Frame { grid: volume.grid(), lattice, tolerance, brightest: Brightest::of(scene) };
+    let frame = Frame { grid: volume.grid(), tolerance, brightest: Brightest::of(scene) };
     let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
     match &scene.model {
         Model::Light => {}
@@ -128,13 +128,19 @@ fn for_samples<'a, V: Voxel>(
     };
     match (double, bake::<f32>(tf, rescale)) {
         (Baked::OneD(double), Baked::OneD(single)) => {
+            let (double, single) = (classified(lattice, double), classified(lattice, single));
             Box::new(Kernel { frame, shading, double, single, precision, name: name("tf1d") })
         }
         (Baked::TwoD(double), Baked::TwoD(single)) => {
+            let (double, single) = (classified(lattice, double), classified(lattice, single));
             Box::new(Kernel { frame, shading, double, single, precision, name: name("tf2d") })
         }
         _ => unreachable!("both precisions bake the same transfer function"),
     }
+}
+
+fn classified<V, C>(lattice: Lattice<'_, V>, classifier: C) -> Classified<'_, V, C> {
+    Classified { lattice, classifier }
 }
 
 /// f32 is used where an interval between knots is at least this many roundings wide, over the tolerance. On public scans a
@@ -157,9 +163,9 @@ impl<F: Fn(&Ray) -> Option<Traced> + Sync> Tracer for Direct<F> {
     }
 }
 
-/// A kernel for one type of voxels, transfer function and shading, in both precisions.
-struct Kernel<'a, V, D, S> {
-    frame: Frame<'a, V>,
+/// A kernel for one type of medium, in both precisions.
+struct Kernel<'a, D, S> {
+    frame: Frame<'a>,
     shading: Option<&'a Shading>,
     double: D,
     single: S,
@@ -167,7 +173,7 @@ struct Kernel<'a, V, D, S> {
     name: String,
 }
 
-impl<V: Voxel, D: Medium<f64>, S: Medium<f32>> Kernel<'_, V, D, S> {
+impl<D: Medium<f64>, S: Medium<f32>> Kernel<'_, D, S> {
     /// Traces a ray, and says whether rounding might have misplaced a cut.
     fn trace_in<R: Real, M: Medium<R>>(&self, medium: &M, ray: &Ray) -> Option<(Traced, bool)> {
         let mut splits = Splits::<R>::default();
@@ -182,7 +188,7 @@ impl<V: Voxel, D: Medium<f64>, S: Medium<f32>> Kernel<'_, V, D, S> {
     }
 }
 
-impl<V: Voxel, D: Medium<f64>, S: Medium<f32>> Tracer for Kernel<'_, V, D, S> {
+impl<D: Medium<f64>, S: Medium<f32>> Tracer for Kernel<'_, D, S> {
     fn trace(&self, ray: &Ray) -> Option<Traced> {
         if self.precision == Precision::Single {
             let (traced, ill_conditioned) = self.trace_in::<f32, S>(&self.single, ray)?;

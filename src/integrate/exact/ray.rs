@@ -1,8 +1,5 @@
 //! One ray, cell by cell and piece by piece, within its budget.
 
-use std::cell::OnceCell;
-
-use crate::field::Voxel;
 use crate::math::Real;
 use crate::scene::{Ray, Scene};
 use crate::transfer::Side;
@@ -10,7 +7,6 @@ use crate::volume::Grid;
 
 use super::budget::Budget;
 use super::cells::IndexRay;
-use super::lattice::{Lattice, along};
 use super::medium::Medium;
 use super::shade::Shader;
 use super::splits::Splits;
@@ -38,9 +34,8 @@ pub struct Traced {
 
 /// What all rays of a frame share.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame<'a, V> {
+pub(super) struct Frame<'a> {
     pub(super) grid: &'a Grid,
-    pub(super) lattice: Lattice<'a, V>,
     pub(super) tolerance: f64,
     pub(super) brightest: Brightest,
 }
@@ -95,7 +90,7 @@ impl Brightest {
     }
 }
 
-impl<V: Voxel> Frame<'_, V> {
+impl Frame<'_> {
     /// Traces one ray.
     pub(super) fn trace<R: Real, M: Medium<R>, S: Shader<R>>(
         &self,
@@ -113,14 +108,10 @@ impl<V: Voxel> Frame<'_, V> {
             pieces: 0,
         };
         for segment in inside.segments(self.grid) {
-            let stored = self.lattice.corners(segment.cell);
-            // A 2D transfer function and shading read the same gradients; nobody may read any.
-            let at_corners = OnceCell::new();
-            let gradients = || *at_corners.get_or_init(|| self.lattice.gradients(segment.cell));
-            let Some(fields) = medium.fields(&stored, &segment, gradients) else {
+            let Some(fields) = medium.fields(&segment) else {
                 continue;
             };
-            let shading = shader.cell(|| gradients().map(|c| along(&c, &segment)));
+            let shading = shader.cell(|| medium.gradient(&fields, &segment));
             let harm = self.brightest.per_mm.max(self.brightest.extinction_per_mm) * segment.length_mm;
             splits.restart(R::from_f64(harm / (OF_A_CUT * self.tolerance)));
             medium.cut(&fields, splits);

@@ -1,6 +1,6 @@
 //! Fixed-step ray marching, as the textbooks and VTK do it.
 //!
-//! A ray is cut into intervals ([`lattice`]); a kernel, chosen by the types of voxels, transfer function and shading,
+//! A ray is cut into intervals ([`lattice`]); a kernel, chosen by the type of what absorbs and emits ([`medium`]),
 //! evaluates a run of samples at a time; a fold ([`composite`]), chosen by the other settings, composites the run. So
 //! every setting is decided once per frame and none is asked at a sample, without one kernel per combination.
 
@@ -8,9 +8,11 @@ mod composite;
 mod jitter;
 mod kernel;
 mod lattice;
+mod medium;
 
 pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
+pub(super) use medium::Classified;
 
 use crate::error::{Error, Fault, Result};
 use crate::plan::March;

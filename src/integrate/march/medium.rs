@@ -1,0 +1,53 @@
+//! What absorbs and emits at a position.
+
+use glam::DVec3;
+
+use crate::classify::{Classifier, Rgbs};
+use crate::field::{GradientUnits, Position, Trilinear, Voxel};
+use crate::integrate::shade::Shader;
+
+/// What absorbs and emits. It reads of the volume what it needs, and nothing else; chosen by type, once per frame.
+pub(in super::super) trait Medium: Sync {
+    /// What is constant along a ray.
+    type Aim: Default;
+
+    /// Computes what is constant along a ray of this direction.
+    fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
+
+    /// Shaded emission and extinction at a position, 1/mm, none of them negative.
+    fn sample(&self, aim: &Self::Aim, position: Position) -> Rgbs<f32>;
+}
+
+/// A scalar field, classified and shaded at each sample.
+pub(in super::super) struct Classified<'a, V, C, S> {
+    pub(in super::super) field: Trilinear<'a, V>,
+    /// The gradient magnitude, HU/mm; there if the transfer function reads it.
+    pub(in super::super) magnitude: Option<Trilinear<'a, f32>>,
+    pub(in super::super) units: GradientUnits,
+    pub(in super::super) classifier: &'a C,
+    pub(in super::super) shader: &'a S,
+}
+
+impl<V: Voxel, C: Classifier<f32>, S: Shader> Medium for Classified<'_, V, C, S> {
+    type Aim = S::Aim;
+
+    fn aim(&self, direction: DVec3, aim: &mut S::Aim) {
+        self.shader.aim(direction, aim);
+    }
+
+    #[inline(always)]
+    fn sample(&self, aim: &S::Aim, position: Position) -> Rgbs<f32> {
+        let cell = position.cell();
+        let magnitude = match &self.magnitude {
+            Some(magnitude) if C::READS_GRADIENT => magnitude.value(&cell),
+            _ => 0.0,
+        };
+        let optics = self.classifier.classify(self.field.value(&cell), magnitude);
+        // Rounding may leave a trace below 0 at the foot of a ramp.
+        let optics = optics.map(|x| if x > 0.0 { x } else { 0.0 });
+        if !S::READS_GRADIENT || optics == [0.0; 4] {
+            return optics;
+        }
+        self.shader.shade(aim, optics, self.units.per_mm(self.field.gradient_per_index(&cell)))
+    }
+}
