@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 
 use crate::field::Voxel;
 use crate::math::Real;
-use crate::scene::{Ray, Scene};
+use crate::scene::{Clip, Ray, Scene};
 use crate::transfer::Side;
 use crate::volume::Grid;
 
@@ -40,6 +40,7 @@ pub struct Traced {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame<'a, V> {
     pub(super) grid: &'a Grid,
+    pub(super) clip: &'a Clip,
     pub(super) lattice: Lattice<'a, V>,
     pub(super) tolerance: f64,
     pub(super) brightest: Brightest,
@@ -104,7 +105,7 @@ impl<V: Voxel> Frame<'_, V> {
         shader: &S,
         splits: &mut Splits<R>,
     ) -> Option<Traced> {
-        let inside = IndexRay::clip(ray, self.grid)?;
+        let inside = IndexRay::new(ray, self.grid, self.clip)?;
         let mut light = Front {
             radiance: [0.0; 3],
             transmittance: 1.0,
