@@ -2,6 +2,7 @@
 
 mod analytic;
 mod cli;
+mod clip;
 mod dicom;
 mod exact;
 mod hard_cases;

@@ -5,6 +5,7 @@ use std::path::Path;
 use pellucid::spec::Spec;
 use pellucid::{Error, Fault};
 
+mod cuts;
 mod defaults;
 mod mistakes;
 mod overrides;

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use crate::scene::Ray;
+use crate::scene::{Clip, Ray};
 use crate::volume::Grid;
 
-/// The part of a ray inside the domain, in f64 and from its own entry, so that the distance of the camera costs no
+/// The part of a ray inside the domain, clipped, in f64 and from its own entry, so that the distance of the camera costs no
 /// precision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Chord {
@@ -20,16 +20,17 @@ pub(super) struct Chord {
 }
 
 impl Chord {
-    /// The part of `ray` inside the domain and in front of its origin; `None` if it has no length.
+    /// The part of `ray` inside the domain, not clipped away and in front of its origin; `None` if it has no length.
     ///
     /// Slabs (Kay and Kajiya 1986) in index space, where the domain is a box whatever the shear. An axis the ray does not
     /// move on is a test of its own, so that 0 · ∞ cannot arise.
-    pub(super) fn new(grid: &Grid, ray: Ray) -> Option<Self> {
+    pub(super) fn new(grid: &Grid, clip: &Clip, ray: Ray) -> Option<Self> {
         let to_index = grid.lps_mm_to_index();
         let origin = to_index.transform_point3(ray.origin_mm);
         let direction = to_index.transform_vector3(ray.direction);
         let (low, high) = grid.index_bounds();
-        let (mut entry_mm, mut exit_mm) = (0.0f64, f64::INFINITY);
+        // What is clipped is a slab too; nothing clipped is all that is ahead.
+        let [mut entry_mm, mut exit_mm] = clip.interval_mm(&ray)?;
         for a in 0..3 {
             if direction[a] == 0.0 {
                 if origin[a] < low[a] || origin[a] > high[a] {
@@ -59,13 +60,14 @@ impl Chord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::HalfSpace;
 
     fn grid() -> Grid {
         Grid::axis_aligned([11, 21, 31], DVec3::new(1.0, 0.5, 2.0)).unwrap()
     }
 
     fn chord(origin_mm: DVec3, direction: DVec3) -> Option<Chord> {
-        Chord::new(&grid(), Ray { origin_mm, direction: direction.normalize() })
+        Chord::new(&grid(), &Clip::default(), Ray { origin_mm, direction: direction.normalize() })
     }
 
     #[test]
@@ -114,6 +116,31 @@ mod tests {
     fn an_axis_of_one_voxel_is_as_thick_as_its_spacing() {
         let flat = Grid::axis_aligned([4, 4, 1], DVec3::new(1.0, 1.0, 5.0)).unwrap();
         let ray = Ray { origin_mm: DVec3::new(1.0, 1.0, -50.0), direction: DVec3::Z };
-        assert!((Chord::new(&flat, ray).unwrap().length_mm - 5.0).abs() < 1e-12);
+        assert!((Chord::new(&flat, &Clip::default(), ray).unwrap().length_mm - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn clipping_moves_the_ends_and_nothing_else() {
+        let clip = |normal: DVec3, offset_mm| Clip { half_spaces: vec![HalfSpace { normal, offset_mm }] };
+        let ray = Ray { origin_mm: DVec3::new(5.0, 5.0, -7.0), direction: DVec3::Z };
+        let cut = |clip: &Clip| Chord::new(&grid(), clip, ray);
+        let whole = cut(&Clip::default());
+        let front = cut(&clip(DVec3::Z, 12.0)).unwrap();
+        assert_eq!((front.entry_mm, front.length_mm, front.entry_index.z), (19.0, 48.0, 6.0));
+        let back = cut(&clip(-DVec3::Z, -12.0)).unwrap();
+        assert_eq!((back.entry_mm, back.length_mm, back.entry_index.z), (7.0, 12.0, 0.0));
+        assert_eq!(cut(&clip(DVec3::Z, 61.0)), None, "all of it");
+        assert_eq!(cut(&clip(DVec3::X, 6.0)), None, "beside the ray");
+        assert_eq!(cut(&clip(DVec3::new(1.0, 0.0, 1.0), -9.0)), whole, "to the bit where nothing is cut off");
+    }
+
+    #[test]
+    fn a_far_camera_costs_nothing_behind_a_clip_either() {
+        let direction = DVec3::new(0.6, 0.0, 0.8);
+        let clip = Clip { half_spaces: vec![HalfSpace { normal: DVec3::new(0.2, 0.1, 1.0), offset_mm: 21.0 }] };
+        let from = |mm: f64| Ray { origin_mm: DVec3::new(5.0, 5.0, 30.0) - mm * direction, direction };
+        let [near, far] = [100.0, 1e6].map(|mm| Chord::new(&grid(), &clip, from(mm)).unwrap());
+        assert!((near.length_mm - far.length_mm).abs() < 1e-8, "{} and {}", near.length_mm, far.length_mm);
+        assert!((near.entry_index - far.entry_index).length() < 1e-8, "{} and {}", near.entry_index, far.entry_index);
     }
 }

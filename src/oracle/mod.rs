@@ -149,6 +149,12 @@ impl<'a> Oracle<'a> {
         })
     }
 
+    /// The part of the ray between two distances from its origin, mm, that is in the domain and not clipped away.
+    fn path(&self, ray: &Ray, from_mm: f64, to_mm: f64) -> Option<Path> {
+        let [first_mm, last_mm] = self.scene.effects.clip.interval_mm(ray)?;
+        Path::new(self.volume.grid(), ray, from_mm.max(first_mm), to_mm.min(last_mm))
+    }
+
     /// Gathers light cell by cell, from the eye on; `gather` is given the fields along a passage and its length in mm.
     fn walk(
         &self,
@@ -159,7 +165,7 @@ impl<'a> Oracle<'a> {
     ) -> Segment {
         let mut light = Light::default();
         let mut splits = Splits::default();
-        let path = Path::new(self.volume.grid(), ray, from_mm, to_mm);
+        let path = self.path(ray, from_mm, to_mm);
         for passage in path.iter().flat_map(Path::passages) {
             let shaded = self.scene.shading.is_some();
             if let Some(fields) = Fields::new(self.volume, &self.patches, shaded, &passage) {

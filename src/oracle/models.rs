@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::Oracle;
 use super::bernstein::Cubic;
 use super::cell::{Cell, along};
-use super::path::{Passage, Path};
+use super::path::Passage;
 use super::roots::{critical_points, crossing};
 use crate::scene::{Ray, Surface, ValueModel, ValueOf};
 
@@ -70,7 +70,7 @@ pub(super) fn surfaces(oracle: &Oracle<'_>, surfaces: &[Surface], ray: &Ray) -> 
 }
 
 fn passages<'a>(oracle: &'a Oracle<'_>, ray: &Ray) -> impl Iterator<Item = (Passage, Cubic)> + 'a {
-    let path = Path::new(oracle.volume.grid(), ray, 0.0, f64::INFINITY);
+    let path = oracle.path(ray, 0.0, f64::INFINITY);
     path.into_iter().flat_map(|path| path.passages().collect::<Vec<_>>()).map(|passage| {
         let values = Cell::new(oracle.volume, passage.cell).values();
         (passage, along(&values, &passage))

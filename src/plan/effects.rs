@@ -2,7 +2,10 @@
 
 use crate::scene::Effects;
 use crate::spec::Spec;
+use crate::volume::Grid;
 
-pub(super) fn resolve(_spec: &Spec) -> Effects {
-    Effects::default()
+use super::clip;
+
+pub(super) fn resolve(spec: &Spec, grid: &Grid) -> Effects {
+    Effects { clip: clip::resolve(spec, grid), ..Effects::default() }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use crate::scene::{Background, Camera, Light, Projection, Shading};
+use crate::scene::{Background, Camera, Clip, HalfSpace, Light, Projection, Shading};
 
 use super::Plan;
 
@@ -20,6 +20,9 @@ pub fn explain(plan: &Plan) -> String {
     text.push('\n');
     line(&mut text, "layers", &plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + "));
     line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    if let Some(clip) = describe_clip(&plan.scene.effects.clip) {
+        line(&mut text, "clip", &clip);
+    }
     line(&mut text, "behind", &describe_background(plan.scene.background));
     line(&mut text, "camera", &describe_camera(&plan.scene.camera));
     line(&mut text, "output", &plan.output.path.display().to_string());
@@ -65,6 +68,13 @@ fn describe_shading(shading: Option<&Shading>) -> String {
         s.soft_gradient_per_mm,
         s.lights.iter().map(describe_light).collect::<Vec<_>>().join(" and ")
     )
+}
+
+/// `None` if nothing is cut off.
+fn describe_clip(clip: &Clip) -> Option<String> {
+    let side = |h: &HalfSpace| format!("x . {} >= {:.2} mm", vector(h.normal.to_array(), 3), h.offset_mm);
+    let sides: Vec<String> = clip.half_spaces.iter().map(side).collect();
+    (!sides.is_empty()).then(|| format!("points x with {}", sides.join(", ")))
 }
 
 fn describe_light(light: &Light) -> String {
@@ -134,6 +144,7 @@ pub fn explain_json(plan: &Plan) -> Value {
             "layers": layers.collect::<Vec<_>>()
         },
         "shading": plan.scene.shading.as_ref().map(shading_json),
+        "clip": plan.scene.effects.clip.half_spaces.iter().map(half_space_json).collect::<Vec<_>>(),
         "background": match plan.scene.background {
             Background::Transparent => json!("transparent"),
             Background::Color(rgb) => json!(rgb),
@@ -152,6 +163,10 @@ pub fn explain_json(plan: &Plan) -> Value {
         "not_computed": plan.not_computed,
         "warnings": plan.warnings
     })
+}
+
+fn half_space_json(half_space: &HalfSpace) -> Value {
+    json!({ "normal": half_space.normal.to_array(), "offset_mm": half_space.offset_mm })
 }
 
 fn shading_json(shading: &Shading) -> Value {

@@ -5,6 +5,7 @@
 //! what is not, and why. [`explain`] prints it. Nothing below this module reads a [`Spec`].
 
 mod camera;
+mod clip;
 mod effects;
 mod explain;
 mod integrator;
@@ -76,7 +77,7 @@ impl Plan {
             shading: light.shading,
             camera: camera::resolve(spec, &volume.grid)?,
             background: light.background,
-            effects: effects::resolve(spec),
+            effects: effects::resolve(spec, &volume.grid),
         };
         let method = integrator::resolve(spec, &volume.grid);
         let demand = Demand {

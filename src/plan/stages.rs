@@ -4,6 +4,7 @@ use crate::scene::{Model, Scene};
 use crate::spec::Spec;
 use crate::volume::Grid;
 
+use super::clip;
 use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, SampleRule, VolumeInfo};
 
 /// One stage of the computation.
@@ -195,6 +196,9 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     for layer in plan.layers.iter().filter(|layer| layer.terms.is_empty()) {
         let why = format!("{} is 0 everywhere in the window and the range of gradient magnitudes", layer.name);
         omissions.push(Omission { what: "layer", why });
+    }
+    if clip::written(spec).is_some() && plan.scene.effects.clip.half_spaces.is_empty() {
+        omissions.push(Omission { what: "clipping", why: "effects.clip holds the whole volume".to_owned() });
     }
     if plan.certify.is_none() {
         omissions.push(Omission { what: "certificate", why: "certify asks for no pixels".to_owned() });

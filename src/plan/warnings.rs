@@ -4,6 +4,7 @@ use crate::spec::{Spec, ValuesName};
 use crate::transfer::{Optics, Side, TransferFunction};
 use crate::volume::Quantity;
 
+use super::clip;
 use super::{Exact, Method, Plan, VolumeInfo};
 
 pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
@@ -18,6 +19,10 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     }
     if shows_nothing(tf, volume.value_range) {
         warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
+    }
+    if clip::leaves_nothing(&plan.scene.effects.clip, &volume.grid) {
+        warnings
+            .push("effects.clip leaves nothing of this volume: the picture will show the background alone".to_owned());
     }
     for (_, preset) in spec.layers() {
         let Some(preset) = preset.map(|loaded| &loaded.preset) else { continue };

@@ -25,7 +25,7 @@ fn check(marked: &str, message: &str) {
 }
 
 /// The same for keys after the shortest pipeline.
-fn check_after(marked: &str, message: &str) {
+pub(super) fn check_after(marked: &str, message: &str) {
     check(&format!("{SHORT}{marked}"), message);
 }
 

@@ -4,7 +4,7 @@
 //! along the ray; inside a cell coordinates are in `[0, 1]`, and f32 is enough.
 
 use super::super::chord::Chord;
-use crate::scene::Ray;
+use crate::scene::{Clip, Ray};
 use crate::volume::Grid;
 
 /// A ray inside a volume.
@@ -29,15 +29,15 @@ pub(super) struct Segment {
 }
 
 impl IndexRay {
-    /// The part of a ray inside the domain of a grid, or `None` if it misses it.
-    pub(super) fn clip(ray: &Ray, grid: &Grid) -> Option<Self> {
-        let mut chord = Chord::new(grid, *ray)?;
+    /// The part of a ray inside the domain of a grid and not clipped away, or `None` if there is none.
+    pub(super) fn new(ray: &Ray, grid: &Grid, clip: &Clip) -> Option<Self> {
+        let mut chord = Chord::new(grid, clip, *ray)?;
         let (low, high) = grid.index_bounds();
         chord.entry_index = chord.entry_index.clamp(low, high);
         Some(IndexRay { chord })
     }
 
-    /// Where it enters the domain, mm from its origin.
+    /// Where it enters, mm from its origin.
     pub(super) fn enter_mm(&self) -> f64 {
         self.chord.entry_mm
     }
@@ -152,7 +152,7 @@ mod tests {
     fn walk(origin: DVec3, direction: DVec3, dims: [usize; 3]) -> Vec<Segment> {
         let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();
         let ray = Ray { origin_mm: origin, direction: direction.normalize() };
-        IndexRay::clip(&ray, &grid).map(|r| r.segments(&grid).collect()).unwrap_or_default()
+        IndexRay::new(&ray, &grid, &Clip::default()).map(|r| r.segments(&grid).collect()).unwrap_or_default()
     }
 
     #[test]

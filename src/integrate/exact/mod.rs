@@ -102,18 +102,20 @@ fn for_samples<'a, V: Voxel>(
     precision: Precision,
 ) -> Box<dyn Tracer + 'a> {
     let lattice = Lattice::new(volume, samples);
-    let frame = Frame { grid: volume.grid(), tolerance, brightest: Brightest::of(scene) };
+    let clip = &scene.effects.clip;
+    let frame = Frame { grid: volume.grid(), clip, tolerance, brightest: Brightest::of(scene) };
     let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
     match &scene.model {
         Model::Light => {}
         Model::Value(model) => {
             let (grid, rescale) = (volume.grid(), volume.rescale());
-            let trace = move |ray: &Ray| models::show_value(&lattice, grid, rescale, model, ray);
+            let trace = move |ray: &Ray| models::show_value(&lattice, grid, clip, rescale, model, ray);
             return Box::new(Direct { trace, name: format!("exact/{}/value/f64", V::NAME) });
         }
         Model::Surfaces(surfaces) => {
             let (grid, rescale, shading) = (volume.grid(), volume.rescale(), scene.shading.as_ref());
-            let trace = move |ray: &Ray| Some(models::show_surfaces(&lattice, grid, rescale, surfaces, shading, ray));
+            let trace =
+                move |ray: &Ray| Some(models::show_surfaces(&lattice, grid, clip, rescale, surfaces, shading, ray));
             return Box::new(Direct { trace, name: format!("exact/{}/surfaces/f64", V::NAME) });
         }
     }

@@ -1,10 +1,11 @@
 //! Pictures that are not of light: one number of the values along a ray, or level surfaces. In f64, exact up to rounding.
 
 use crate::field::Voxel;
-use crate::scene::{Ray, Shading, Surface, ValueModel, ValueOf};
+use crate::scene::{Clip, Ray, Shading, Surface, ValueModel, ValueOf};
 use crate::volume::{Grid, Rescale};
 
 use super::Traced;
+use super::cells::IndexRay;
 use super::lattice::Lattice;
 use super::values::{Extreme, crossings, extreme, mean};
 
@@ -15,17 +16,20 @@ const ROUNDING: f64 = 1e-9;
 pub(super) fn show_value<V: Voxel>(
     lattice: &Lattice<'_, V>,
     grid: &Grid,
+    clip: &Clip,
     rescale: Rescale,
     model: &ValueModel,
     ray: &Ray,
 ) -> Option<Traced> {
+    let inside = IndexRay::new(ray, grid, clip)?;
+    let segments = inside.segments(grid);
     // A falling rescale turns the largest value into the smallest stored number.
     let falling = rescale.slope < 0.0;
     let stored = match model.of {
-        ValueOf::Maximum if !falling => extreme(lattice, grid, ray, Extreme::Largest)?,
-        ValueOf::Minimum if falling => extreme(lattice, grid, ray, Extreme::Largest)?,
-        ValueOf::Maximum | ValueOf::Minimum => extreme(lattice, grid, ray, Extreme::Smallest)?,
-        ValueOf::Mean => mean(lattice, grid, ray)?,
+        ValueOf::Maximum if !falling => extreme(lattice, segments, Extreme::Largest)?,
+        ValueOf::Minimum if falling => extreme(lattice, segments, Extreme::Largest)?,
+        ValueOf::Maximum | ValueOf::Minimum => extreme(lattice, segments, Extreme::Smallest)?,
+        ValueOf::Mean => mean(lattice, segments, inside.length_mm()),
     };
     let light = model.light(rescale.value(stored));
     Some(Traced { radiance: [light; 3], transmittance: 0.0, opacity: 1.0, bound: ROUNDING, pieces: 1 })
@@ -35,6 +39,7 @@ pub(super) fn show_value<V: Voxel>(
 pub(super) fn show_surfaces<V: Voxel>(
     lattice: &Lattice<'_, V>,
     grid: &Grid,
+    clip: &Clip,
     rescale: Rescale,
     surfaces: &[Surface],
     shading: Option<&Shading>,
@@ -42,7 +47,8 @@ pub(super) fn show_surfaces<V: Voxel>(
 ) -> Traced {
     let levels: Vec<f64> = surfaces.iter().map(|s| rescale.stored(s.value)).collect();
     let mut traced = Traced { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, bound: ROUNDING, pieces: 0 };
-    crossings(lattice, grid, ray, &levels, |crossing| {
+    let segments = IndexRay::new(ray, grid, clip).into_iter().flat_map(|inside| inside.segments(grid));
+    crossings(lattice, segments, &levels, |crossing| {
         let Surface { opacity, color, .. } = surfaces[crossing.level];
         let (reflected, highlight) = match shading {
             Some(shading) => shading.factors(crossing.gradient_per_mm.into(), ray.direction),

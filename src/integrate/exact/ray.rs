@@ -1,7 +1,7 @@
 //! One ray, cell by cell and piece by piece, within its budget.
 
 use crate::math::Real;
-use crate::scene::{Ray, Scene};
+use crate::scene::{Clip, Ray, Scene};
 use crate::transfer::Side;
 use crate::volume::Grid;
 
@@ -36,6 +36,7 @@ pub struct Traced {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame<'a> {
     pub(super) grid: &'a Grid,
+    pub(super) clip: &'a Clip,
     pub(super) tolerance: f64,
     pub(super) brightest: Brightest,
 }
@@ -99,7 +100,7 @@ impl Frame<'_> {
         shader: &S,
         splits: &mut Splits<R>,
     ) -> Option<Traced> {
-        let inside = IndexRay::clip(ray, self.grid)?;
+        let inside = IndexRay::new(ray, self.grid, self.clip)?;
         let mut light = Front {
             radiance: [0.0; 3],
             transmittance: 1.0,

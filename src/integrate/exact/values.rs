@@ -1,13 +1,10 @@
 //! What the values along a ray say without a transfer function: extremes, mean, and where they cross a level. All from the
 //! exact cubics, in f64, so there is nothing to bound but rounding.
 
+use super::cells::Segment;
+use super::lattice::{Lattice, along};
 use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, critical_points, crossing, range, sum, value};
-use crate::scene::Ray;
-use crate::volume::Grid;
-
-use super::cells::{IndexRay, Segment};
-use super::lattice::{Lattice, along};
 
 /// Which extreme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,17 +13,21 @@ pub(super) enum Extreme {
     Smallest,
 }
 
-/// The extreme stored value along a ray, or `None` if it misses the volume. A cubic takes its extremes at its ends and
+/// The extreme stored value along the segments of a ray, or `None` if there are none. A cubic takes its extremes at its ends and
 /// critical points, and lies between its Bernstein coefficients and between its cell's corners, so most cells cost one
 /// comparison of their corners.
-pub(super) fn extreme<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray, which: Extreme) -> Option<f64> {
+pub(super) fn extreme<V: Voxel>(
+    lattice: &Lattice<'_, V>,
+    segments: impl Iterator<Item = Segment>,
+    which: Extreme,
+) -> Option<f64> {
     // The smallest value is minus the largest of the negated field.
     let sign = match which {
         Extreme::Largest => 1.0,
         Extreme::Smallest => -1.0,
     };
     let mut best = f64::NEG_INFINITY;
-    for segment in IndexRay::clip(ray, grid)?.segments(grid) {
+    for segment in segments {
         let corners = lattice.corners::<f64>(segment.cell).map(|v| sign * v);
         if range(&corners)[1] <= best {
             continue;
@@ -42,15 +43,14 @@ pub(super) fn extreme<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray
     best.is_finite().then_some(sign * best)
 }
 
-/// Mean stored value along a ray, or `None` if it misses the volume. The mean of a polynomial is the mean of its Bernstein
-/// coefficients.
-pub(super) fn mean<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray) -> Option<f64> {
-    let inside = IndexRay::clip(ray, grid)?;
+/// Mean stored value over the segments of a ray, which are `length_mm` long together. The mean of a polynomial is the mean
+/// of its Bernstein coefficients.
+pub(super) fn mean<V: Voxel>(lattice: &Lattice<'_, V>, segments: impl Iterator<Item = Segment>, length_mm: f64) -> f64 {
     let mut total = 0.0;
-    for segment in inside.segments(grid) {
+    for segment in segments {
         total += 0.25 * sum(&along(&lattice.corners::<f64>(segment.cell), &segment)) * segment.length_mm;
     }
-    Some(total / inside.length_mm())
+    total / length_mm
 }
 
 /// A place where the value along a ray crosses a level.
@@ -64,22 +64,21 @@ pub(super) struct Crossing {
     pub(super) gradient_per_mm: [f64; 3],
 }
 
-/// Calls `visit` for every crossing of one of the stored `levels` along a ray, front to back, until it returns false.
+/// Calls `visit` for every crossing of one of the stored `levels` along the segments of a ray, front to back, until it
+/// returns false.
 ///
 /// A point is inside a level where the value is at least the level; a crossing is a change from outside to inside or back.
-/// The state is carried along the ray, so that a crossing on the face between two cells counts once. A volume that begins
-/// or ends inside a level has no crossing at its border.
+/// The state is carried along the ray, so that a crossing on the face between two cells counts once. A ray that begins or
+/// ends inside a level, at the border of the volume or where it is clipped, has no crossing there.
 pub(super) fn crossings<V: Voxel>(
     lattice: &Lattice<'_, V>,
-    grid: &Grid,
-    ray: &Ray,
+    segments: impl Iterator<Item = Segment>,
     levels: &[f64],
     mut visit: impl FnMut(Crossing) -> bool,
 ) {
-    let Some(ray) = IndexRay::clip(ray, grid) else { return };
     let mut inside: Vec<Option<bool>> = vec![None; levels.len()];
     let mut found: Vec<(f64, usize)> = Vec::new();
-    for segment in ray.segments(grid) {
+    for segment in segments {
         let corners = lattice.corners::<f64>(segment.cell);
         let [low, high] = range(&corners);
         let settled = |(level, state): (&f64, &Option<bool>)| match state {
@@ -135,8 +134,10 @@ fn flips(cubic: &Cubic<f64>, level: f64, inside: &mut Option<bool>, mut at: impl
 
 #[cfg(test)]
 mod tests {
+    use super::super::cells::IndexRay;
     use super::*;
-    use crate::volume::{Quantity, Rescale, Samples, Volume};
+    use crate::scene::{Clip, Ray};
+    use crate::volume::{Grid, Quantity, Rescale, Samples, Volume};
     use glam::DVec3;
 
     fn volume() -> Volume {
@@ -159,12 +160,19 @@ mod tests {
         })
     }
 
+    fn inside(volume: &Volume, ray: &Ray) -> Option<IndexRay> {
+        IndexRay::new(ray, volume.grid(), &Clip::default())
+    }
+
+    fn segments(volume: &Volume, ray: &Ray) -> impl Iterator<Item = Segment> {
+        inside(volume, ray).into_iter().flat_map(|inside| inside.segments(volume.grid()))
+    }
+
     /// Values at many points of a ray.
     fn sampled(volume: &Volume, ray: &Ray) -> Vec<f64> {
-        let inside = IndexRay::clip(ray, volume.grid()).unwrap();
         let lattice = lattice(volume);
         let mut all = Vec::new();
-        for segment in inside.segments(volume.grid()) {
+        for segment in segments(volume, ray) {
             let cubic = along(&lattice.corners::<f64>(segment.cell), &segment);
             all.extend((0..=400).map(|i| value(&cubic, f64::from(i) / 400.0)));
         }
@@ -177,8 +185,8 @@ mod tests {
         for ray in rays() {
             let samples = sampled(&volume, &ray);
             let (low, high) = samples.iter().fold((f64::MAX, f64::MIN), |(l, h), &v| (l.min(v), h.max(v)));
-            let largest = extreme(&lattice(&volume), volume.grid(), &ray, Extreme::Largest).unwrap();
-            let smallest = extreme(&lattice(&volume), volume.grid(), &ray, Extreme::Smallest).unwrap();
+            let largest = extreme(&lattice(&volume), segments(&volume, &ray), Extreme::Largest).unwrap();
+            let smallest = extreme(&lattice(&volume), segments(&volume, &ray), Extreme::Smallest).unwrap();
             assert!((0.0..1e-2).contains(&(largest - high)), "largest {largest}, sampled {high}");
             assert!((0.0..1e-2).contains(&(low - smallest)), "smallest {smallest}, sampled {low}");
         }
@@ -191,9 +199,9 @@ mod tests {
         let grid = Grid::axis_aligned([6, 5, 4], DVec3::ONE).unwrap();
         let volume = Volume::new(grid, Samples::I16(samples), Rescale::IDENTITY, Quantity::Hu).unwrap();
         for ray in rays() {
-            let Some(inside) = IndexRay::clip(&ray, &grid) else { continue };
+            let Some(inside) = inside(&volume, &ray) else { continue };
             let middle = ray.origin_mm + 0.5 * (inside.enter_mm() + inside.exit_mm()) * ray.direction;
-            let found = mean(&lattice(&volume), &grid, &ray).unwrap();
+            let found = mean(&lattice(&volume), inside.segments(&grid), inside.length_mm());
             let expected = 10.0 * middle.x + 7.0 * middle.y - 30.0 * middle.z;
             assert!((found - expected).abs() < 1e-10, "found {found}, expected {expected}");
         }
@@ -206,7 +214,7 @@ mod tests {
         for ray in rays() {
             let mut found = [0_usize; 2];
             let mut last = f64::MIN;
-            crossings(&lattice(&volume), volume.grid(), &ray, &levels, |c| {
+            crossings(&lattice(&volume), segments(&volume, &ray), &levels, |c| {
                 assert!(c.at_mm >= last, "front to back");
                 last = c.at_mm;
                 found[c.level] += 1;
@@ -238,7 +246,7 @@ mod tests {
                     direction: (sign * direction).normalize(),
                 };
                 let mut places = Vec::new();
-                crossings(&lattice(&volume), &grid, &ray, &[0.0], |c| {
+                crossings(&lattice(&volume), segments(&volume, &ray), &[0.0], |c| {
                     places.push(c.at_mm);
                     true
                 });

@@ -24,13 +24,13 @@ pub(in super::super) struct Kernel<'a, M> {
 impl<M: Medium> Kernel<'_, M> {
     /// Renders every pixel of a frame.
     pub(in super::super) fn render(&self, frame: &Frame<'_>, settings: &March) -> (Image, Tally) {
-        let (grid, camera) = (frame.volume.grid(), &frame.scene.camera);
+        let (grid, clip, camera) = (frame.volume.grid(), &frame.scene.effects.clip, &frame.scene.camera);
         let fold = composite::fold(settings);
         // View planes stand still when the camera moves along its line of sight.
         let anchor_mm = grid.center_mm();
         tiles::render(frame, M::Aim::default, |aim, column, row| {
             let ray = camera.pixel_ray(column, row);
-            let chord = Chord::new(grid, ray)?;
+            let chord = Chord::new(grid, clip, ray)?;
             let cuts = Cuts::new(settings, &chord, ray, camera.forward(), anchor_mm, [column, row]);
             self.medium.aim(ray.direction, aim);
             let mut walk = Walk { light: Light::new(settings), samples: 0, fold };

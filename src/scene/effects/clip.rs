@@ -16,7 +16,8 @@ pub struct HalfSpace {
 /// An intersection of half-spaces; of none, all of space.
 ///
 /// **Definition.** What is outside neither absorbs nor emits and casts no shadow; a face made by clipping has no
-/// gradient of its own, and shading there is that of the uncut field.
+/// gradient of its own, and shading there is that of the uncut field. A level surface has no crossing there either: it is
+/// open where it is cut.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clip {
     /// Points in all of these are shown.

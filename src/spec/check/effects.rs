@@ -1,5 +1,6 @@
 //! Checks on effects, and on what they leave for others to read.
 
+use super::clip::check_clip;
 use super::{Check, join};
 use crate::error::Result;
 use crate::spec::{EffectsSpec, IntegrateSpec, LightSpec, Pipeline};
@@ -22,6 +23,9 @@ pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<
 }
 
 pub(super) fn check_effects(check: Check<'_>, effects: &EffectsSpec) -> Result<()> {
+    if let Some(clip) = &effects.clip {
+        check_clip(check, clip)?;
+    }
     if let Some([low, high]) = effects.project.as_ref().and_then(|project| project.window_hu) {
         check.require("effects.project.window_hu", low < high, "[lowest, highest], the lower first")?;
     }

@@ -1,8 +1,10 @@
 //! Effects as written: what a scene asks for beyond emission and absorption.
 
+mod clip;
 mod shading;
 mod show;
 
+pub use clip::{ClipBoxSpec, ClipPlaneSpec, ClipSpec, RangeSpec, TrimSpec};
 pub use shading::{LightSpec, ShadingSpec};
 pub use show::{ProjectSpec, ProjectionOf, SurfaceSpec};
 
@@ -13,6 +15,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectsSpec {
+    /// Shows a part of the volume only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clip: Option<ClipSpec>,
     /// Levoy's gradient shading with the Blinn-Phong reflection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingSpec>,
