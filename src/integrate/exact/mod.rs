@@ -7,9 +7,11 @@
 
 mod budget;
 mod cells;
+mod depth;
 mod lattice;
 mod medium;
 mod models;
+mod peak;
 mod piece;
 mod ray;
 mod shade;
@@ -21,7 +23,7 @@ use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::plan::Exact;
-use crate::scene::{Model, Ray, Scene, Shading};
+use crate::scene::{Model, Ray, Scene, Shading, ValueModel};
 use crate::volume::{Samples, Volume};
 
 use super::tiles::{self, Radiance};
@@ -106,10 +108,13 @@ fn for_samples<'a, V: Voxel>(
     let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
     match &scene.model {
         Model::Light => {}
+        Model::Value(model) if model.of.reads_transfer_function() => {
+            return for_optical_depth(lattice, volume, scene, model);
+        }
         Model::Value(model) => {
             let (grid, rescale) = (volume.grid(), volume.rescale());
             let trace = move |ray: &Ray| models::show_value(&lattice, grid, rescale, model, ray);
-            return Box::new(Direct { trace, name: format!("exact/{}/value/f64", V::NAME) });
+            return Box::new(Direct { trace, name: format!("exact/{}/{}/f64", V::NAME, model.of.name()) });
         }
         Model::Surfaces(surfaces) => {
             let (grid, rescale, shading) = (volume.grid(), volume.rescale(), scene.shading.as_ref());
@@ -134,6 +139,26 @@ fn for_samples<'a, V: Voxel>(
             Box::new(Kernel { frame, shading, double, single, precision, name: name("tf2d") })
         }
         _ => unreachable!("both precisions bake the same transfer function"),
+    }
+}
+
+fn for_optical_depth<'a, V: Voxel>(
+    lattice: Lattice<'a, V>,
+    volume: &'a Volume,
+    scene: &'a Scene,
+    model: &'a ValueModel,
+) -> Box<dyn Tracer + 'a> {
+    let grid = volume.grid();
+    let name = |classifier: &str| format!("exact/{}/{classifier}/{}/f64", V::NAME, model.of.name());
+    match bake::<f64>(&scene.transfer_function, volume.rescale()) {
+        Baked::OneD(medium) => {
+            let trace = move |ray: &Ray| models::show_depth(&lattice, grid, &medium, model, ray);
+            Box::new(Direct { trace, name: name("tf1d") })
+        }
+        Baked::TwoD(medium) => {
+            let trace = move |ray: &Ray| models::show_depth(&lattice, grid, &medium, model, ray);
+            Box::new(Direct { trace, name: name("tf2d") })
+        }
     }
 }
 

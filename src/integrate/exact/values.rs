@@ -1,4 +1,4 @@
-//! What the values along a ray say without a transfer function: extremes, mean, and where they cross a level. All from the
+//! What the values along a ray say without a transfer function: extremes, integral, and where they cross a level. All from the
 //! exact cubics, in f64, so there is nothing to bound but rounding.
 
 use crate::field::Voxel;
@@ -42,15 +42,15 @@ pub(super) fn extreme<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray
     best.is_finite().then_some(sign * best)
 }
 
-/// Mean stored value along a ray, or `None` if it misses the volume. The mean of a polynomial is the mean of its Bernstein
-/// coefficients.
-pub(super) fn mean<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray) -> Option<f64> {
+/// The integral of the stored value along a ray, stored units times mm, and the ray's length inside the volume, mm; `None`
+/// if it misses the volume. The mean of a polynomial is the mean of its Bernstein coefficients.
+pub(super) fn integral<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray) -> Option<(f64, f64)> {
     let inside = IndexRay::clip(ray, grid)?;
     let mut total = 0.0;
     for segment in inside.segments(grid) {
         total += 0.25 * sum(&along(&lattice.corners::<f64>(segment.cell), &segment)) * segment.length_mm;
     }
-    Some(total / inside.length_mm())
+    Some((total, inside.length_mm()))
 }
 
 /// A place where the value along a ray crosses a level.
@@ -68,19 +68,21 @@ pub(super) struct Crossing {
 ///
 /// A point is inside a level where the value is at least the level; a crossing is a change from outside to inside or back.
 /// The state is carried along the ray, so that a crossing on the face between two cells counts once. A volume that begins
-/// or ends inside a level has no crossing at its border.
+/// or ends inside a level has no crossing at its border. `sign` is -1 where values fall as stored numbers rise.
 pub(super) fn crossings<V: Voxel>(
     lattice: &Lattice<'_, V>,
     grid: &Grid,
     ray: &Ray,
+    sign: f64,
     levels: &[f64],
     mut visit: impl FnMut(Crossing) -> bool,
 ) {
     let Some(ray) = IndexRay::clip(ray, grid) else { return };
+    let levels: Vec<f64> = levels.iter().map(|level| sign * level).collect();
     let mut inside: Vec<Option<bool>> = vec![None; levels.len()];
     let mut found: Vec<(f64, usize)> = Vec::new();
     for segment in ray.segments(grid) {
-        let corners = lattice.corners::<f64>(segment.cell);
+        let corners = lattice.corners::<f64>(segment.cell).map(|v| sign * v);
         let [low, high] = range(&corners);
         let settled = |(level, state): (&f64, &Option<bool>)| match state {
             Some(true) => low >= *level,
@@ -193,7 +195,8 @@ mod tests {
         for ray in rays() {
             let Some(inside) = IndexRay::clip(&ray, &grid) else { continue };
             let middle = ray.origin_mm + 0.5 * (inside.enter_mm() + inside.exit_mm()) * ray.direction;
-            let found = mean(&lattice(&volume), &grid, &ray).unwrap();
+            let (total, length_mm) = integral(&lattice(&volume), &grid, &ray).unwrap();
+            let found = total / length_mm;
             let expected = 10.0 * middle.x + 7.0 * middle.y - 30.0 * middle.z;
             assert!((found - expected).abs() < 1e-10, "found {found}, expected {expected}");
         }
@@ -206,7 +209,7 @@ mod tests {
         for ray in rays() {
             let mut found = [0_usize; 2];
             let mut last = f64::MIN;
-            crossings(&lattice(&volume), volume.grid(), &ray, &levels, |c| {
+            crossings(&lattice(&volume), volume.grid(), &ray, 1.0, &levels, |c| {
                 assert!(c.at_mm >= last, "front to back");
                 last = c.at_mm;
                 found[c.level] += 1;
@@ -238,7 +241,7 @@ mod tests {
                     direction: (sign * direction).normalize(),
                 };
                 let mut places = Vec::new();
-                crossings(&lattice(&volume), &grid, &ray, &[0.0], |c| {
+                crossings(&lattice(&volume), &grid, &ray, 1.0, &[0.0], |c| {
                     places.push(c.at_mm);
                     true
                 });
