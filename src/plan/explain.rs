@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use crate::scene::{Background, Camera, Light, Projection, Shading};
+use crate::scene::{Background, Camera, Light, Model, Projection, Shading};
 
 use super::Plan;
 
@@ -17,8 +17,12 @@ pub fn explain(plan: &Plan) -> String {
     }
     line(&mut text, "memory", &bytes(plan.memory_bytes()));
     text.push('\n');
-    line(&mut text, "layers", &plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + "));
-    line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    if !plan.layers.is_empty() {
+        line(&mut text, "layers", &layer_names(plan));
+    }
+    if !matches!(plan.scene.model, Model::Value(_)) {
+        line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    }
     line(&mut text, "behind", &describe_background(plan.scene.background));
     line(&mut text, "camera", &describe_camera(&plan.scene.camera));
     line(&mut text, "output", &plan.output.path.display().to_string());
@@ -35,6 +39,10 @@ pub fn explain(plan: &Plan) -> String {
         }
     }
     text
+}
+
+fn layer_names(plan: &Plan) -> String {
+    plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + ")
 }
 
 // Writing to a string cannot fail.

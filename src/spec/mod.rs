@@ -27,14 +27,14 @@ mod widget;
 
 pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
-pub use effects::{EffectsSpec, LightSpec, ProjectSpec, ProjectionOf, ShadingSpec, SurfaceSpec};
+pub use effects::{EffectsSpec, LightSpec, ProjectSpec, ProjectionOf, ShadingSpec, SurfaceSpec, TransportName};
 pub use integrate::{
     ColorsName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName,
     RuleName,
 };
 pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset};
 pub use pipeline::{
-    BackgroundSpec, Bits, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec, PhantomHead, PhantomSpec, Pipeline,
+    AttenuationSpec, BackgroundSpec, Bits, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec, PhantomHead, PhantomSpec, Pipeline,
     Series, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};

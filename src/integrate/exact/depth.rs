@@ -26,7 +26,7 @@ impl Extinction for OneD<f64> {
     fn mean_per_mm(&self, value: &Self::Fields, [from, to]: [f64; 2]) -> f64 {
         let (i, dv) = within_interval(self.axis(), &restrict(value, from, to));
         let Linear { low, slope } = self.piece(i);
-        slope[EXTINCTION].mul_add(0.25 * sum(&dv), low[EXTINCTION])
+        low[EXTINCTION] + slope[EXTINCTION] * (0.25 * sum(&dv))
     }
 }
 

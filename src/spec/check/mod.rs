@@ -3,6 +3,7 @@
 mod camera;
 mod effects;
 mod pipeline;
+mod show;
 mod widget;
 
 pub(super) use pipeline::check_pipeline;

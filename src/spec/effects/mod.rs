@@ -4,7 +4,7 @@ mod shading;
 mod show;
 
 pub use shading::{LightSpec, ShadingSpec};
-pub use show::{ProjectSpec, ProjectionOf, SurfaceSpec};
+pub use show::{ProjectSpec, ProjectionOf, SurfaceSpec, TransportName};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,10 +13,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectsSpec {
+    /// What of the transfer function shows; `both` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<TransportName>,
     /// Levoy's gradient shading with the Blinn-Phong reflection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingSpec>,
-    /// Shows one number of the values along each ray as a grey, instead of light.
+    /// Shows one number of what lies along each ray as a grey, instead of light.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub project: Option<ProjectSpec>,
     /// Shows level surfaces, instead of light.
