@@ -38,6 +38,12 @@ impl EmptySpace {
         EmptySpace::from_active(values.blocks(), &active)
     }
 
+    /// The blocks of which `is_active` holds, given the range of their values with what rounding makes of it.
+    pub(super) fn by_values(values: &Macrocells, is_active: impl Fn([f32; 2]) -> bool) -> Self {
+        let active: Vec<bool> = values.ranges().iter().map(|&range| is_active(widened(range))).collect();
+        EmptySpace::from_active(values.blocks(), &active)
+    }
+
     fn from_active(blocks: [usize; 3], active: &[bool]) -> Self {
         let mut distance: Vec<u8> = active.iter().map(|&a| if a { 0 } else { u8::MAX }).collect();
         // Chessboard distance in two passes over the neighbours already seen (Rosenfeld and Pfaltz 1966).
@@ -65,7 +71,7 @@ impl EmptySpace {
 }
 
 /// A range that also holds what rounding makes of interpolated values.
-fn widened([low, high]: [f32; 2]) -> [f32; 2] {
+pub(super) fn widened([low, high]: [f32; 2]) -> [f32; 2] {
     let margin = 1e-6 * low.abs().max(high.abs());
     [low - margin, high + margin]
 }

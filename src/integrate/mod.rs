@@ -17,7 +17,7 @@ use std::fmt;
 use crate::error::Result;
 use crate::image::Image;
 use crate::plan::Method;
-use crate::scene::Scene;
+use crate::scene::{Model, Scene};
 use crate::volume::Volume;
 
 /// A picture, and what it took.
@@ -63,7 +63,7 @@ pub type Progress<'a> = &'a (dyn Fn(usize) + Sync);
 /// Renders a scene.
 ///
 /// # Errors
-/// `Fault::Unsupported` for marching what is not light, `Fault::Spec` for settings that are no usable numbers, `Fault::Limit` for a step so small that a picture would take for
+/// `Fault::Spec` for settings that are no usable numbers, `Fault::Limit` for a step so small that a picture would take for
 /// ever.
 pub fn render(volume: &Volume, scene: &Scene, method: &Method, progress: Progress<'_>) -> Result<Rendered> {
     render_scheduled(volume, scene, method, Schedule::default(), progress)
@@ -83,8 +83,12 @@ pub fn render_scheduled(
     let frame = Frame { volume, scene, schedule, progress };
     match method {
         Method::March(settings) => {
-            march::check(settings, scene, volume.grid())?;
-            select::march(&frame, settings)
+            march::check(settings, volume.grid())?;
+            match &scene.model {
+                Model::Light => select::march(&frame, settings),
+                Model::Value(model) => march::show_number(&frame, settings, model),
+                Model::Surfaces(surfaces) => march::show_surfaces(&frame, settings, surfaces),
+            }
         }
         Method::Exact(settings) => exact::render(&frame, settings),
         Method::Reference => Ok(reference::render(&frame)),

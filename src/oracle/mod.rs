@@ -18,6 +18,7 @@
 mod bernstein;
 mod cell;
 mod collocation;
+mod depth;
 mod fields;
 mod light;
 mod lit_piece;

@@ -1,4 +1,4 @@
-//! Pictures that are not of light: one number of the values along a ray, or level surfaces.
+//! Pictures that are not of light: one number of what lies along a ray, or level surfaces.
 //!
 //! Cubics are taken apart at their critical points; nothing is skipped by corners or coefficients, and crossings are found
 //! by bisection.
@@ -8,28 +8,43 @@ use glam::DVec3;
 use super::Oracle;
 use super::bernstein::Cubic;
 use super::cell::{Cell, along};
+use super::depth;
 use super::path::Passage;
 use super::roots::{critical_points, crossing};
 use crate::scene::{Ray, Surface, ValueModel, ValueOf};
 
-/// One number of the values along a ray, or `None` if it misses the volume.
+/// One number of what lies along a ray, or `None` if it misses the volume.
 pub(super) fn number(oracle: &Oracle<'_>, model: &ValueModel, ray: &Ray) -> Option<f64> {
-    let (mut most, mut least, mut total, mut length_mm) = (f64::NEG_INFINITY, f64::INFINITY, 0.0, 0.0);
+    if model.of.reads_transfer_function() {
+        return depth::optical_depth(oracle, ray);
+    }
+    // Between neighbours of these the value is monotone.
+    let (mut turns, mut total, mut length_mm) = (Vec::new(), 0.0, 0.0);
     for (passage, value) in passages(oracle, ray) {
         for [from, to] in critical_points(&value.0).stretches() {
-            for v in [value.at(from), value.at(to)] {
-                most = f64::max(most, v);
-                least = f64::min(least, v);
-            }
+            turns.extend([value.at(from), value.at(to)]);
         }
         total += value.mean() * passage.length_mm;
         length_mm += passage.length_mm;
     }
+    let most = turns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = turns.iter().copied().fold(f64::INFINITY, f64::min);
     (length_mm > 0.0).then_some(match model.of {
         ValueOf::Maximum => most,
         ValueOf::Minimum => least,
         ValueOf::Mean => total / length_mm,
+        ValueOf::LocalMaximum { threshold } => local_maximum(&turns, threshold, model.smallest_fall()).unwrap_or(most),
+        ValueOf::Sum | ValueOf::OpticalDepth => total,
     })
+}
+
+/// The largest value before the first fall from at least `threshold`.
+fn local_maximum(turns: &[f64], threshold: f64, fall: f64) -> Option<f64> {
+    let so_far = turns.iter().scan(f64::NEG_INFINITY, |most, &v| {
+        *most = most.max(v);
+        Some((*most, v))
+    });
+    so_far.into_iter().find(|&(most, v)| most >= threshold && v < most - fall).map(|(most, _)| most)
 }
 
 /// Premultiplied linear RGBA of the level surfaces along a ray.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use crate::scene::{Background, Camera, Clip, HalfSpace, Light, Projection, Shading};
+use crate::scene::{Background, Camera, Clip, HalfSpace, Light, Model, Projection, Shading};
 
 use super::Plan;
 
@@ -18,8 +18,12 @@ pub fn explain(plan: &Plan) -> String {
     let (when, most) = plan.peak();
     line(&mut text, "memory", &format!("{} at peak, while {when}", bytes(most)));
     text.push('\n');
-    line(&mut text, "layers", &plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + "));
-    line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    if !plan.layers.is_empty() {
+        line(&mut text, "layers", &layer_names(plan));
+    }
+    if !matches!(plan.scene.model, Model::Value(_)) {
+        line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    }
     if let Some(clip) = describe_clip(&plan.scene.effects.clip) {
         line(&mut text, "clip", &clip);
     }
@@ -39,6 +43,10 @@ pub fn explain(plan: &Plan) -> String {
         }
     }
     text
+}
+
+fn layer_names(plan: &Plan) -> String {
+    plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + ")
 }
 
 // Writing to a string cannot fail.

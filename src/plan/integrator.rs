@@ -46,6 +46,7 @@ fn march(spec: &MarchSpec, grid: &Grid) -> March {
             None | Some(LatticeName::PerRay) => Lattice::PerRay,
             Some(LatticeName::ViewPlanes) => Lattice::ViewPlanes,
         },
+        bisections: spec.bisections.unwrap_or(0),
         jitter: spec.jitter.as_ref().map(jitter),
         termination_transmittance: spec.termination_transmittance.unwrap_or(0.0),
     }

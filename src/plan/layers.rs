@@ -2,13 +2,16 @@
 
 use crate::error::{Error, Result};
 use crate::spec::{
-    Color, ContourSpec, EmissionSpec, LayerSpec, LoadedPreset, Pipeline, Spec, Tissue, ValuesName, Widget,
+    AttenuationSpec, Color, ContourSpec, EmissionSpec, LayerSpec, LoadedPreset, Pipeline, Spec, Tissue, ValuesName,
+    Widget,
 };
+use crate::transfer::attenuation::Attenuation;
 use crate::transfer::shapes::{Ellipse, Expansion, Gaussian, Shape, Triangle, extinction_per_mm};
 use crate::transfer::{Curve, Knot, Optics, Side, Term, Weight};
 use crate::volume::Quantity;
 
 use super::VolumeInfo;
+use super::light::Scales;
 
 /// How far terms may be from a shape, as a share of its height, unless told.
 const DEFAULT_DEVIATION: f64 = 1.0 / 32.0;
@@ -33,18 +36,20 @@ pub(super) fn domain(pipeline: &Pipeline) -> [[f64; 2]; 2] {
     [window, gradient]
 }
 
-/// The layers in the order written, with all emission times `emission_scale`.
+/// The layers in the order written, with all extinction and emission scaled.
 pub(super) fn resolve(
     spec: &Spec,
     volume: &VolumeInfo,
     gradient_range_per_mm: f64,
-    emission_scale: f64,
+    scales: Scales,
 ) -> Result<Vec<Layer>> {
     let resolve = |(i, (layer, loaded)): (usize, (&LayerSpec, Option<&LoadedPreset>))| {
         let key_path = format!("transfer_function.{i}");
         let preset = loaded.map(|loaded| &loaded.preset);
-        if preset.is_some_and(|p| p.values != Some(ValuesName::Arbitrary)) {
-            refuse_hu_for_other_values(spec, volume, layer, &key_path)?;
+        let is_in_hu = preset.is_some_and(|p| p.values != Some(ValuesName::Arbitrary)) || layer.attenuation.is_some();
+        if is_in_hu {
+            let kind = if layer.attenuation.is_some() { "attenuation" } else { "preset" };
+            refuse_hu_for_other_values(spec, volume, layer, [&key_path, kind])?;
         }
         let widgets = preset.map(|p| &p.widgets).or(layer.widgets.as_ref());
         let mut max_deviation = 0.0f64;
@@ -56,23 +61,45 @@ pub(super) fn resolve(
             let expansion = expand(widget, layer.color).map_err(named)?;
             max_deviation = max_deviation.max(expansion.max_deviation);
             for term in expansion.terms {
-                terms.extend(placed(term, layer, emission_scale).and_then(|t| simplified(t, gradient_range_per_mm))?);
+                terms.extend(placed(term, layer, scales).and_then(|t| simplified(t, gradient_range_per_mm))?);
             }
         }
-        let name = preset.map_or_else(|| format!("layer {}", i + 1), |p| p.name.clone());
+        let attenuation = layer.attenuation.as_ref().map(attenuation);
+        if let Some(attenuation) = attenuation {
+            let term = Term { curve: attenuation.curve()?, weight: None };
+            terms.extend(placed(term, layer, scales).and_then(|t| simplified(t, gradient_range_per_mm))?);
+        }
+        let name = match (preset, attenuation) {
+            (Some(preset), _) => preset.name.clone(),
+            (None, Some(attenuation)) => format!("attenuation at {} keV", attenuation.kev),
+            (None, None) => format!("layer {}", i + 1),
+        };
         Ok(Layer { name, tissue: preset.and_then(|p| p.tissue.clone()), terms, max_deviation })
     };
     spec.layers().enumerate().map(resolve).collect()
 }
 
-/// A preset in HU means nothing on values of unknown meaning, unless the layer says how the two relate.
-fn refuse_hu_for_other_values(spec: &Spec, volume: &VolumeInfo, layer: &LayerSpec, key_path: &str) -> Result<()> {
+/// The usual tube voltage is 120 kVp, and its effective energy about 70 keV.
+fn attenuation(spec: &AttenuationSpec) -> Attenuation {
+    Attenuation { kev: spec.kev, scanned_at_kev: spec.scanned_at_kev.unwrap_or(70.0) }
+}
+
+/// What is in HU means nothing on values of unknown meaning, unless the layer says how the two relate.
+fn refuse_hu_for_other_values(
+    spec: &Spec,
+    volume: &VolumeInfo,
+    layer: &LayerSpec,
+    [path, kind]: [&str; 2],
+) -> Result<()> {
     if volume.quantity == Quantity::Hu || layer.scale.is_some() || layer.shift_hu.is_some() {
         return Ok(());
     }
     let [low, high] = volume.value_range;
     Err(spec
-        .error(&format!("{key_path}.preset"), "this preset is in HU, and the volume does not say that its values are")
+        .error(
+            &format!("{path}.{kind}"),
+            format!("this {kind} is in HU, and the volume does not say that its values are"),
+        )
         .found(format!("values from {low} to {high} of unknown unit"))
         .remedy(
             "write volume: { values: hu } if they are HU, volume: { shift_hu: -1024 } if they are HU + 1024, \
@@ -151,14 +178,14 @@ fn optics(
 }
 
 /// A term with the layer's scale, shift and opacity scale.
-fn placed(term: Term, layer: &LayerSpec, emission_scale: f64) -> Result<Term> {
+fn placed(term: Term, layer: &LayerSpec, scales: Scales) -> Result<Term> {
     let (scale, shift) = (layer.scale.unwrap_or(1.0), layer.shift_hu.unwrap_or(0.0));
     let opacity_scale = layer.opacity_scale.unwrap_or(1.0);
     let knots = term.curve.knots().iter().map(|knot| Knot {
         value: knot.value * scale + shift,
         optics: Optics {
-            extinction_per_mm: knot.optics.extinction_per_mm * opacity_scale,
-            emission_per_mm: knot.optics.emission_per_mm.map(|q| q * opacity_scale * emission_scale),
+            extinction_per_mm: knot.optics.extinction_per_mm * opacity_scale * scales.extinction,
+            emission_per_mm: knot.optics.emission_per_mm.map(|q| q * opacity_scale * scales.emission),
         },
     });
     let weight = term.weight.map(|w| Weight::new(w.knots().iter().map(|[g, w]| [g * scale, *w]).collect()));

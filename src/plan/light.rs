@@ -3,19 +3,42 @@
 use glam::DVec3;
 
 use crate::scene::{Background, Light, Shading};
-use crate::spec::{BackgroundSpec, Color, LightSpec, ShadingSpec, Spec};
+use crate::spec::{BackgroundSpec, Color, LightSpec, ShadingSpec, Spec, TransportName};
 
 /// Light, resolved.
 pub(super) struct ResolvedLight {
     /// Shading; `None` if nothing is lit.
     pub(super) shading: Option<Shading>,
-    /// Factor on all emission: the ambient share where shading is written but nothing is lit.
-    pub(super) emission_scale: f64,
+    /// Factors on what the layers absorb and emit.
+    pub(super) scales: Scales,
     pub(super) background: Background,
 }
 
+/// Factors on all extinction and all emission of the transfer function.
+///
+/// `effects.light` is no more than this: without emission the light from behind is what is left to see, and without
+/// extinction nothing is hidden and there are no highlights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Scales {
+    pub(super) extinction: f64,
+    /// The ambient share, too, where shading is written but nothing is lit.
+    pub(super) emission: f64,
+}
+
 pub(super) fn resolve(spec: &Spec) -> ResolvedLight {
-    let written = spec.pipeline.effects.as_ref().and_then(|effects| effects.shading.as_ref()).map(shading);
+    let effects = spec.pipeline.effects.clone().unwrap_or_default();
+    let transport = effects.light.unwrap_or(TransportName::Both);
+    let scales = match (transport, &effects.project) {
+        // The optical depth is of extinction.
+        (TransportName::Absorption, _) | (_, Some(_)) => Scales { extinction: 1.0, emission: 0.0 },
+        (TransportName::Emission, None) => Scales { extinction: 0.0, emission: 1.0 },
+        (TransportName::Both, None) => Scales { extinction: 1.0, emission: 1.0 },
+    };
+    let written = effects.shading.as_ref().map(|written| {
+        let shading = shading(written);
+        // A highlight is extinction times its strength.
+        if scales.extinction == 0.0 { Shading { specular: 0.0, ..shading } } else { shading }
+    });
     let background = spec.pipeline.image.as_ref().and_then(|image| image.background);
     let background = match background.unwrap_or(BackgroundSpec::Color(Color::BLACK)) {
         BackgroundSpec::Transparent => Background::Transparent,
@@ -24,9 +47,10 @@ pub(super) fn resolve(spec: &Spec) -> ResolvedLight {
     match written {
         // Without light, shading is a constant factor, and no gradient need be computed for it.
         Some(Shading { diffuse, specular, ambient, .. }) if diffuse == 0.0 && specular == 0.0 => {
-            ResolvedLight { shading: None, emission_scale: ambient, background }
+            let scales = Scales { emission: ambient * scales.emission, ..scales };
+            ResolvedLight { shading: None, scales, background }
         }
-        shading => ResolvedLight { shading, emission_scale: 1.0, background },
+        shading => ResolvedLight { shading, scales, background },
     }
 }
 

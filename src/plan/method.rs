@@ -36,6 +36,8 @@ pub struct March {
     pub emission: Emission,
     /// Where the intervals of neighbouring rays lie.
     pub lattice: Lattice,
+    /// How often an interval in which a surface is crossed is halved before the crossing is interpolated linearly.
+    pub bisections: u32,
     /// Offset of the lattice per pixel; `None` for the same on all rays.
     pub jitter: Option<Jitter>,
     /// A front-to-back ray stops where less than this transmittance is left; 0 never.

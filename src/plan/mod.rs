@@ -69,7 +69,7 @@ impl Plan {
         let output = Output::resolve(spec, output)?;
         let [window, gradient_range] = layers::domain(&spec.pipeline);
         let light = light::resolve(spec);
-        let layers = layers::resolve(spec, volume, gradient_range[1], light.emission_scale)?;
+        let layers = layers::resolve(spec, volume, gradient_range[1], light.scales)?;
         let terms = layers.iter().flat_map(|layer| layer.terms.iter().cloned()).collect();
         let scene = Scene {
             model: model::resolve(spec),
@@ -83,7 +83,7 @@ impl Plan {
         let demand = Demand {
             gradient: scene.shading.is_some(),
             gradient_magnitude: scene.transfer_function.reads_gradient(),
-            macrocells: matches!(method, Method::March(_)),
+            macrocells: matches!(method, Method::March(_)) && model::skips_blocks(&scene.model),
         };
         let mut plan = Plan {
             scene,

@@ -1,10 +1,11 @@
 //! What is computed, in order, and what is not, and why.
 
-use crate::scene::{Model, Scene};
+use crate::scene::{Model, Scene, ValueModel, ValueOf};
 use crate::spec::Spec;
 use crate::volume::Grid;
 
 use super::clip;
+use super::model::{self, reads_transfer_function};
 use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, SampleRule, VolumeInfo};
 
 /// One stage of the computation.
@@ -47,13 +48,13 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         let channels = if plan.demand.gradient_magnitude { 2 } else { 1 };
         field("macrocells: value ranges of blocks of 8 x 8 x 8 cells", 8 * channels * block_count(&volume.grid));
     }
-    if plan.scene.model == Model::Light {
+    if reads_transfer_function(&plan.scene) {
         stages.push(classify(plan));
     }
     let pixels: u64 = plan.scene.camera.size().iter().map(|&n| n as u64).product();
     stages.push(Stage {
         name: "integrate",
-        what: format!("{}: {}", kernel(&plan.method, &plan.scene, volume), describe_method(&plan.method)),
+        what: format!("{}: {}", kernel(&plan.method, &plan.scene, volume), describe_method(plan, volume)),
         bytes: 16 * pixels,
     });
     stages.push(Stage {
@@ -107,26 +108,33 @@ fn classify(plan: &Plan) -> Stage {
 
 /// Name of a kernel by what it is made of, such as `march/i16/tf2d/lit`.
 fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
-    let method = match method {
-        Method::Exact(_) => "exact",
-        Method::March(_) => "march",
+    let (method, real) = match method {
+        Method::Exact(_) => ("exact", "f64"),
+        Method::March(_) => ("march", "f32"),
         Method::Reference => return "reference in f64".to_owned(),
     };
-    match scene.model {
-        Model::Light => {}
-        Model::Value(_) => return format!("{method}/{}/value/f64", volume.storage.name()),
-        Model::Surfaces(_) => return format!("{method}/{}/surfaces/f64", volume.storage.name()),
-    }
+    let storage = volume.storage.name();
     let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
+    match &scene.model {
+        Model::Light => {}
+        Model::Value(ValueModel { of: ValueOf::OpticalDepth, .. }) => {
+            return format!("{method}/{storage}/{classifier}/{}/{real}", ValueOf::OpticalDepth.name());
+        }
+        Model::Value(model) => return format!("{method}/{storage}/{}/{real}", model.of.name()),
+        Model::Surfaces(_) => return format!("{method}/{storage}/surfaces/{real}"),
+    }
     let shader = if scene.shading.is_some() { "lit" } else { "unlit" };
-    format!("{method}/{}/{classifier}/{shader}", volume.storage.name())
+    format!("{method}/{storage}/{classifier}/{shader}")
 }
 
-fn describe_method(method: &Method) -> String {
-    let march = match method {
-        Method::Exact(Exact { tolerance }) => return format!("each channel of a pixel within {tolerance:.3e}"),
-        Method::Reference => return "every pixel by the oracle".to_owned(),
-        Method::March(march) => march,
+fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
+    let shown = model::describe(&plan.scene.model, volume.quantity);
+    let march = match (&plan.method, &shown) {
+        (Method::Exact(Exact { tolerance }), None) => return format!("each channel of a pixel within {tolerance:.3e}"),
+        (Method::Exact(_), Some(shown)) => return format!("{shown}; exact to rounding"),
+        (Method::Reference, None) => return "every pixel by the oracle".to_owned(),
+        (Method::Reference, Some(shown)) => return format!("{shown}; every pixel by the oracle"),
+        (Method::March(march), _) => march,
     };
     let rule = match march.rule {
         SampleRule::Left => "left samples",
@@ -137,7 +145,11 @@ fn describe_method(method: &Method) -> String {
         Order::FrontToBack => "front to back",
         Order::BackToFront => "back to front",
     };
-    let mut parts = vec![format!("steps of {:.4} mm", march.step_mm), rule.to_owned(), order.to_owned()];
+    let model = &plan.scene.model;
+    let mut parts = vec![format!("steps of {:.4} mm", march.step_mm)];
+    // Surfaces lie between samples, and only light is composited in either order.
+    parts.extend((!matches!(model, Model::Surfaces(_))).then(|| rule.to_owned()));
+    parts.extend((*model == Model::Light).then(|| order.to_owned()));
     let unusual = [
         (march.colors == Colors::Straight, "straight colours"),
         (march.emission == Emission::PerSample, "emission per sample"),
@@ -154,16 +166,17 @@ fn describe_method(method: &Method) -> String {
     if march.termination_transmittance > 0.0 {
         parts.push(format!("until {:.2e} is transmitted", march.termination_transmittance));
     }
-    parts.join(", ")
+    if march.bisections > 0 {
+        parts.push(format!("{} bisections", march.bisections));
+    }
+    shown.into_iter().chain([parts.join(", ")]).collect::<Vec<_>>().join("; ")
 }
 
 pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     let mut omissions = Vec::new();
     let mut omit = |what, why: &str| omissions.push(Omission { what, why: why.to_owned() });
-    match plan.scene.model {
-        Model::Light => {}
-        Model::Value(_) => omit("classification", "effects.project shows a number of the values, not light"),
-        Model::Surfaces(_) => omit("classification", "effects.surfaces shows surfaces, not light"),
+    for omission in model::not_computed(plan, spec) {
+        omit(omission.what, &omission.why);
     }
     if !plan.demand.gradient_magnitude {
         omit("gradient magnitude", "no layer depends on it within the range of gradient magnitudes");
@@ -181,7 +194,8 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     if !plan.demand.macrocells {
         let why = match plan.method {
             Method::Reference => "the reference skips nothing",
-            _ => "the exact integrator skips cell by cell, by the values at their corners",
+            Method::March(_) => "every value counts, so no block of cells could be skipped",
+            Method::Exact(_) => "the exact integrator skips cell by cell, by the values at their corners",
         };
         omit("macrocells", why);
     }
@@ -189,13 +203,12 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
         if march.jitter.is_none() {
             omit("jitter", "integrate.march has none: all rays share one lattice");
         }
-        if march.termination_transmittance == 0.0 {
+        if march.termination_transmittance == 0.0 && !matches!(plan.scene.model, Model::Value(_)) {
             omit("early ray termination", "termination_transmittance is 0, so that it costs no accuracy");
         }
     }
     for layer in plan.layers.iter().filter(|layer| layer.terms.is_empty()) {
-        let why = format!("{} is 0 everywhere in the window and the range of gradient magnitudes", layer.name);
-        omissions.push(Omission { what: "layer", why });
+        omissions.push(Omission { what: "layer", why: model::why_empty(layer, spec) });
     }
     if clip::written(spec).is_some() && plan.scene.effects.clip.half_spaces.is_empty() {
         omissions.push(Omission { what: "clipping", why: "effects.clip holds the whole volume".to_owned() });

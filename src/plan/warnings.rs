@@ -1,24 +1,37 @@
 //! What a careful user should know of a plan before the first ray.
 
+use crate::scene::{Background, Effects, Model, Scene};
 use crate::spec::{Spec, ValuesName};
 use crate::transfer::{Optics, Side, TransferFunction};
 use crate::volume::Quantity;
 
 use super::clip;
+use super::model::reads_transfer_function;
 use super::{Exact, Method, Plan, VolumeInfo};
 
 pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     let mut warnings = Vec::new();
     let tf = &plan.scene.transfer_function;
-    let ([low, high], [least, most]) = (tf.window(), volume.value_range);
-    if least < low || most > high {
-        warnings.push(format!(
-            "values from {least} to {most} go beyond the window {low} to {high} and look like its ends; \
-             normalise.hu widens it"
-        ));
+    let [low, high] = tf.window();
+    if reads_transfer_function(&plan.scene) {
+        let [least, most] = volume.value_range;
+        if least < low || most > high {
+            warnings.push(format!(
+                "values from {least} to {most} go beyond the window {low} to {high} and look like its ends; \
+                 normalise.hu widens it"
+            ));
+        }
+        if shows_nothing(tf, volume.value_range) {
+            warnings
+                .push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
+        }
     }
-    if shows_nothing(tf, volume.value_range) {
-        warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
+    if is_black(&plan.scene) {
+        let why = "nothing emits and the background is black, so the picture will be black";
+        warnings.push(format!("{why}; image.background lights the volume from behind"));
+    }
+    if plan.scene.model == Model::Surfaces(Vec::new()) {
+        warnings.push("no surface has any opacity: the picture will show the background alone".to_owned());
     }
     if clip::leaves_nothing(&plan.scene.effects.clip, &volume.grid) {
         warnings
@@ -49,6 +62,20 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
         _ => {}
     }
     warnings
+}
+
+/// True if light is only absorbed, and there is none to absorb.
+fn is_black(scene: &Scene) -> bool {
+    let Scene { model, transfer_function, shading, background, effects, .. } = scene;
+    let terms = transfer_function.terms();
+    let mut knots = terms.iter().flat_map(|term| term.curve.knots());
+    *model == Model::Light
+        && !terms.is_empty()
+        && knots.all(|knot| knot.optics.emission_per_mm == [0.0; 3])
+        // A highlight is of what absorbs.
+        && shading.is_none()
+        && *background == Background::Color([0.0; 3])
+        && *effects == Effects::default()
 }
 
 /// True if the transfer function is 0 at all values of the volume, at any gradient magnitude.

@@ -37,6 +37,11 @@ pub struct MarchSpec {
     /// Where in an interval its sample lies; `midpoint` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rule: Option<RuleName>,
+    /// For surfaces: how often the interval in which one is crossed is halved before the crossing is interpolated; 0 by
+    /// default, at most 32.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 32))]
+    pub bisections: Option<u32>,
     /// Direction of compositing; `front-to-back` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<OrderName>,

@@ -29,7 +29,7 @@ pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
 pub use effects::{
     ClipBoxSpec, ClipPlaneSpec, ClipSpec, EffectsSpec, LightSpec, ProjectSpec, ProjectionOf, RangeSpec, ShadingSpec,
-    SurfaceSpec, TrimSpec,
+    SurfaceSpec, TransportName, TrimSpec,
 };
 pub use integrate::{
     ColorsName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName,
@@ -37,8 +37,8 @@ pub use integrate::{
 };
 pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset};
 pub use pipeline::{
-    BackgroundSpec, Bits, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec, PhantomHead, PhantomSpec, Pipeline,
-    Series, ValuesName, VolumeSpec,
+    AttenuationSpec, BackgroundSpec, Bits, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec, PhantomHead, PhantomSpec,
+    Pipeline, Series, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
 pub use schema::{pipeline_schema, preset_schema};

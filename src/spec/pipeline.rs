@@ -143,7 +143,7 @@ pub struct GradientSpec {
     pub range_hu_per_mm: [f64; 2],
 }
 
-/// One layer of the transfer function: exactly one of `preset` and `widgets`.
+/// One layer of the transfer function: exactly one of `preset`, `widgets` and `attenuation`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LayerSpec {
@@ -154,6 +154,9 @@ pub struct LayerSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub widgets: Option<Vec<Widget>>,
+    /// Attenuation of X-rays at a photon energy, from HU; it absorbs and has no colour.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub attenuation: Option<AttenuationSpec>,
     /// Multiplies extinction and emission; 1 by default, at least 0. An opacity α per mm becomes 1 − (1 − α)^scale.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
@@ -167,6 +170,19 @@ pub struct LayerSpec {
     /// Added to the layer's positions on the value axis, HU; 0 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shift_hu: Option<f64>,
+}
+
+/// Attenuation of X-rays by air, water and bone; see [`crate::transfer::attenuation`] for its definition and source.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AttenuationSpec {
+    /// Photon energy of the radiograph, keV.
+    #[schemars(range(min = 10, max = 200))]
+    pub kev: f64,
+    /// Effective photon energy of the scan, keV; 70 by default, as of a tube at 120 kVp.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 10, max = 200))]
+    pub scanned_at_kev: Option<f64>,
 }
 
 /// The picture.

@@ -14,10 +14,13 @@
 //! **Domain.** `v` is clamped to the window and `g` to `[0, gradient_range]`; at and beyond an end of the domain the
 //! function takes its one-sided limit from inside. At a jump in the interior it is continuous from the right.
 //!
+//! **Attenuation** of X-rays, from CT numbers and a photon energy, becomes a curve in [`attenuation`].
+//!
 //! **Shapes** (rectangle, triangle, trapezoid, ellipse, Gaussian, Levoy's contours) and 1D point lists become terms in
 //! [`shapes`]; where a shape is not a product of piecewise linear factors, knots are inserted to a stated bound,
 //! and the function rendered is *defined* to be the terms.
 
+pub mod attenuation;
 mod curve;
 pub mod shapes;
 

@@ -29,6 +29,7 @@ pub(super) fn settings(rule: SampleRule, step_mm: f64) -> March {
         colors: Colors::Associated,
         emission: Emission::PerLength,
         lattice: Lattice::PerRay,
+        bisections: 0,
         jitter: None,
         termination_transmittance: 0.0,
     }

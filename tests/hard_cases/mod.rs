@@ -213,6 +213,7 @@ fn settings(step_mm: f64) -> March {
         colors: Colors::Associated,
         emission: Emission::PerLength,
         lattice: Lattice::PerRay,
+        bisections: 0,
         jitter: None,
         termination_transmittance: 0.0,
     }

@@ -15,6 +15,7 @@ pub(crate) const MARCH: March = March {
     colors: Colors::Associated,
     emission: Emission::PerLength,
     lattice: Lattice::PerRay,
+    bisections: 0,
     jitter: None,
     termination_transmittance: 0.0,
 };

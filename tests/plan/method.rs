@@ -17,6 +17,7 @@ const MARCH: March = March {
     colors: Colors::Associated,
     emission: Emission::PerLength,
     lattice: Lattice::PerRay,
+    bisections: 0,
     jitter: None,
     termination_transmittance: 0.0,
 };

@@ -95,8 +95,8 @@ impl<R: Real, V: Voxel> Medium<R> for Classified<'_, V, OneD<R>> {
 /// What a 2D transfer function reads along a segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ValueAndMagnitude<R> {
-    value: Cubic<R>,
-    magnitude: Cubic<R>,
+    pub(super) value: Cubic<R>,
+    pub(super) magnitude: Cubic<R>,
     /// At the cell's corners: the magnitudes were made of them, and shading reads the same ones.
     gradients: [[R; 8]; 3],
 }
@@ -161,7 +161,7 @@ impl<R: Real, V: Voxel> Medium<R> for Classified<'_, V, TwoD<R>> {
 /// The interval of an axis in which a cubic lies that does not cross a knot, and the cubic less the interval's lower knot.
 /// Outside the domain the transfer function is constant, so there the cubic is replaced by the domain's end.
 #[inline(always)]
-fn within_interval<R: Real>(axis: &Axis<R>, cubic: &Cubic<R>) -> (usize, Cubic<R>) {
+pub(super) fn within_interval<R: Real>(axis: &Axis<R>, cubic: &Cubic<R>) -> (usize, Cubic<R>) {
     // Its value in the middle.
     let eighth = R::from_f64(0.125);
     let middle = eighth * (cubic[0] + R::from_f64(3.0) * (cubic[1] + cubic[2]) + cubic[3]);

@@ -7,9 +7,11 @@
 
 mod budget;
 mod cells;
+mod depth;
 mod lattice;
 mod medium;
 mod models;
+mod peak;
 mod piece;
 mod ray;
 mod shade;
@@ -21,7 +23,7 @@ use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::plan::Exact;
-use crate::scene::{Model, Ray, Scene, Shading};
+use crate::scene::{Model, Ray, Scene, Shading, ValueModel};
 use crate::volume::{Samples, Volume};
 
 use super::tiles::{self, Radiance};
@@ -107,10 +109,13 @@ fn for_samples<'a, V: Voxel>(
     let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
     match &scene.model {
         Model::Light => {}
+        Model::Value(model) if model.of.reads_transfer_function() => {
+            return for_optical_depth(lattice, volume, scene, model);
+        }
         Model::Value(model) => {
             let (grid, rescale) = (volume.grid(), volume.rescale());
             let trace = move |ray: &Ray| models::show_value(&lattice, grid, clip, rescale, model, ray);
-            return Box::new(Direct { trace, name: format!("exact/{}/value/f64", V::NAME) });
+            return Box::new(Direct { trace, name: format!("exact/{}/{}/f64", V::NAME, model.of.name()) });
         }
         Model::Surfaces(surfaces) => {
             let (grid, rescale, shading) = (volume.grid(), volume.rescale(), scene.shading.as_ref());
@@ -143,6 +148,28 @@ fn for_samples<'a, V: Voxel>(
 
 fn classified<V, C>(lattice: Lattice<'_, V>, classifier: C) -> Classified<'_, V, C> {
     Classified { lattice, classifier }
+}
+
+fn for_optical_depth<'a, V: Voxel>(
+    lattice: Lattice<'a, V>,
+    volume: &'a Volume,
+    scene: &'a Scene,
+    model: &'a ValueModel,
+) -> Box<dyn Tracer + 'a> {
+    let (grid, clip) = (volume.grid(), &scene.effects.clip);
+    let name = |classifier: &str| format!("exact/{}/{classifier}/{}/f64", V::NAME, model.of.name());
+    match bake::<f64>(&scene.transfer_function, volume.rescale()) {
+        Baked::OneD(classifier) => {
+            let medium = classified(lattice, classifier);
+            let trace = move |ray: &Ray| models::show_depth(&medium, grid, clip, model, ray);
+            Box::new(Direct { trace, name: name("tf1d") })
+        }
+        Baked::TwoD(classifier) => {
+            let medium = classified(lattice, classifier);
+            let trace = move |ray: &Ray| models::show_depth(&medium, grid, clip, model, ray);
+            Box::new(Direct { trace, name: name("tf2d") })
+        }
+    }
 }
 
 /// f32 is used where an interval between knots is at least this many roundings wide, over the tolerance. On public scans a

@@ -1,4 +1,4 @@
-//! Pictures that are not of light: one number of the values along a ray, or level surfaces. In f64, exact up to rounding.
+//! Pictures that are not of light: one number of what lies along a ray, or level surfaces. In f64, exact up to rounding.
 
 use crate::field::Voxel;
 use crate::scene::{Clip, Ray, Shading, Surface, ValueModel, ValueOf};
@@ -6,13 +6,15 @@ use crate::volume::{Grid, Rescale};
 
 use super::Traced;
 use super::cells::IndexRay;
+use super::depth::{Extinction, optical_depth};
 use super::lattice::Lattice;
-use super::values::{Extreme, crossings, extreme, mean};
+use super::peak::Peak;
+use super::values::{Extreme, crossings, extreme, integral};
 
 /// Rounding of the f64 arithmetic, far above what it amounts to.
 const ROUNDING: f64 = 1e-9;
 
-/// Shows one number of the values along a ray.
+/// Shows one number of the values along a ray; the optical depth is shown by [`show_depth`].
 pub(super) fn show_value<V: Voxel>(
     lattice: &Lattice<'_, V>,
     grid: &Grid,
@@ -24,15 +26,42 @@ pub(super) fn show_value<V: Voxel>(
     let inside = IndexRay::new(ray, grid, clip)?;
     let segments = inside.segments(grid);
     // A falling rescale turns the largest value into the smallest stored number.
-    let falling = rescale.slope < 0.0;
-    let stored = match model.of {
-        ValueOf::Maximum if !falling => extreme(lattice, segments, Extreme::Largest)?,
-        ValueOf::Minimum if falling => extreme(lattice, segments, Extreme::Largest)?,
-        ValueOf::Maximum | ValueOf::Minimum => extreme(lattice, segments, Extreme::Smallest)?,
-        ValueOf::Mean => mean(lattice, segments, inside.length_mm()),
+    let (upwards, downwards) = match rescale.slope < 0.0 {
+        false => (Extreme::Largest, Extreme::Smallest),
+        true => (Extreme::Smallest, Extreme::Largest),
     };
-    let light = model.light(rescale.value(stored));
-    Some(Traced { radiance: [light; 3], transmittance: 0.0, opacity: 1.0, bound: ROUNDING, pieces: 1 })
+    let number = match model.of {
+        ValueOf::Maximum => rescale.value(extreme(lattice, segments, upwards)?),
+        ValueOf::Minimum => rescale.value(extreme(lattice, segments, downwards)?),
+        ValueOf::LocalMaximum { threshold } => {
+            let peak = Peak {
+                sign: rescale.slope.signum(),
+                threshold: rescale.stored(threshold),
+                fall: model.smallest_fall() / rescale.slope.abs(),
+            };
+            rescale.value(peak.first(lattice, segments)?)
+        }
+        ValueOf::Mean => rescale.value(integral(lattice, segments) / inside.length_mm()),
+        ValueOf::Sum => rescale.slope * integral(lattice, segments) + rescale.intercept * inside.length_mm(),
+        ValueOf::OpticalDepth => unreachable!("the optical depth reads a transfer function"),
+    };
+    Some(shown(model, number))
+}
+
+/// Shows the optical depth along a ray.
+pub(super) fn show_depth<M: Extinction>(
+    medium: &M,
+    grid: &Grid,
+    clip: &Clip,
+    model: &ValueModel,
+    ray: &Ray,
+) -> Option<Traced> {
+    Some(shown(model, optical_depth(medium, IndexRay::new(ray, grid, clip)?.segments(grid))))
+}
+
+fn shown(model: &ValueModel, number: f64) -> Traced {
+    let light = model.light(number);
+    Traced { radiance: [light; 3], transmittance: 0.0, opacity: 1.0, bound: ROUNDING, pieces: 1 }
 }
 
 /// Composites the level surfaces along a ray, front to back.
@@ -48,7 +77,7 @@ pub(super) fn show_surfaces<V: Voxel>(
     let levels: Vec<f64> = surfaces.iter().map(|s| rescale.stored(s.value)).collect();
     let mut traced = Traced { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, bound: ROUNDING, pieces: 0 };
     let segments = IndexRay::new(ray, grid, clip).into_iter().flat_map(|inside| inside.segments(grid));
-    crossings(lattice, segments, &levels, |crossing| {
+    crossings(lattice, segments, rescale.slope.signum(), &levels, |crossing| {
         let Surface { opacity, color, .. } = surfaces[crossing.level];
         let (reflected, highlight) = match shading {
             Some(shading) => shading.factors(crossing.gradient_per_mm.into(), ray.direction),

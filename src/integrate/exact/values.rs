@@ -1,4 +1,4 @@
-//! What the values along a ray say without a transfer function: extremes, mean, and where they cross a level. All from the
+//! What the values along a ray say without a transfer function: extremes, integral, and where they cross a level. All from the
 //! exact cubics, in f64, so there is nothing to bound but rounding.
 
 use super::cells::Segment;
@@ -43,14 +43,14 @@ pub(super) fn extreme<V: Voxel>(
     best.is_finite().then_some(sign * best)
 }
 
-/// Mean stored value over the segments of a ray, which are `length_mm` long together. The mean of a polynomial is the mean
+/// The integral of the stored value over the segments of a ray, stored units times mm. The mean of a polynomial is the mean
 /// of its Bernstein coefficients.
-pub(super) fn mean<V: Voxel>(lattice: &Lattice<'_, V>, segments: impl Iterator<Item = Segment>, length_mm: f64) -> f64 {
+pub(super) fn integral<V: Voxel>(lattice: &Lattice<'_, V>, segments: impl Iterator<Item = Segment>) -> f64 {
     let mut total = 0.0;
     for segment in segments {
         total += 0.25 * sum(&along(&lattice.corners::<f64>(segment.cell), &segment)) * segment.length_mm;
     }
-    total / length_mm
+    total
 }
 
 /// A place where the value along a ray crosses a level.
@@ -69,17 +69,20 @@ pub(super) struct Crossing {
 ///
 /// A point is inside a level where the value is at least the level; a crossing is a change from outside to inside or back.
 /// The state is carried along the ray, so that a crossing on the face between two cells counts once. A ray that begins or
-/// ends inside a level, at the border of the volume or where it is clipped, has no crossing there.
+/// ends inside a level, at the border of the volume or where it is clipped, has no crossing there. `sign` is -1 where
+/// values fall as stored numbers rise.
 pub(super) fn crossings<V: Voxel>(
     lattice: &Lattice<'_, V>,
     segments: impl Iterator<Item = Segment>,
+    sign: f64,
     levels: &[f64],
     mut visit: impl FnMut(Crossing) -> bool,
 ) {
+    let levels: Vec<f64> = levels.iter().map(|level| sign * level).collect();
     let mut inside: Vec<Option<bool>> = vec![None; levels.len()];
     let mut found: Vec<(f64, usize)> = Vec::new();
     for segment in segments {
-        let corners = lattice.corners::<f64>(segment.cell);
+        let corners = lattice.corners::<f64>(segment.cell).map(|v| sign * v);
         let [low, high] = range(&corners);
         let settled = |(level, state): (&f64, &Option<bool>)| match state {
             Some(true) => low >= *level,
@@ -201,7 +204,7 @@ mod tests {
         for ray in rays() {
             let Some(inside) = inside(&volume, &ray) else { continue };
             let middle = ray.origin_mm + 0.5 * (inside.enter_mm() + inside.exit_mm()) * ray.direction;
-            let found = mean(&lattice(&volume), inside.segments(&grid), inside.length_mm());
+            let found = integral(&lattice(&volume), inside.segments(&grid)) / inside.length_mm();
             let expected = 10.0 * middle.x + 7.0 * middle.y - 30.0 * middle.z;
             assert!((found - expected).abs() < 1e-10, "found {found}, expected {expected}");
         }
@@ -214,7 +217,7 @@ mod tests {
         for ray in rays() {
             let mut found = [0_usize; 2];
             let mut last = f64::MIN;
-            crossings(&lattice(&volume), segments(&volume, &ray), &levels, |c| {
+            crossings(&lattice(&volume), segments(&volume, &ray), 1.0, &levels, |c| {
                 assert!(c.at_mm >= last, "front to back");
                 last = c.at_mm;
                 found[c.level] += 1;
@@ -246,7 +249,7 @@ mod tests {
                     direction: (sign * direction).normalize(),
                 };
                 let mut places = Vec::new();
-                crossings(&lattice(&volume), segments(&volume, &ray), &[0.0], |c| {
+                crossings(&lattice(&volume), segments(&volume, &ray), 1.0, &[0.0], |c| {
                     places.push(c.at_mm);
                     true
                 });

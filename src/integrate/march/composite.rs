@@ -195,6 +195,7 @@ mod tests {
         colors: Colors::Associated,
         emission: Emission::PerLength,
         lattice: Lattice::PerRay,
+        bisections: 0,
         jitter: None,
         termination_transmittance: 0.0,
     };

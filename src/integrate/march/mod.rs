@@ -3,20 +3,29 @@
 //! A ray is cut into intervals ([`lattice`]); a kernel, chosen by the type of what absorbs and emits ([`medium`]),
 //! evaluates a run of samples at a time; a fold ([`composite`]), chosen by the other settings, composites the run. So
 //! every setting is decided once per frame and none is asked at a sample, without one kernel per combination.
+//!
+//! A picture of numbers ([`number`]) probes the values, or the extinction, and gathers a run into a maximum or an integral
+//! ([`gather`]); a picture of surfaces ([`surfaces`]) looks for changes between neighbouring samples.
 
+mod blocks;
 mod composite;
+mod gather;
 mod jitter;
 mod kernel;
 mod lattice;
 mod medium;
+mod number;
+mod probe;
+mod surfaces;
 
 pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
 pub(super) use medium::Classified;
+pub(super) use number::show_number;
+pub(super) use surfaces::show_surfaces;
 
 use crate::error::{Error, Fault, Result};
 use crate::plan::March;
-use crate::scene::{Model, Scene};
 use crate::volume::Grid;
 
 /// Samples along one ray beyond which a step is refused.
@@ -25,15 +34,9 @@ const MOST_SAMPLES_PER_RAY: f64 = 1e8;
 /// Refuses settings that mean nothing or would take for ever.
 ///
 /// # Errors
-/// `Fault::Unsupported` for a scene that is not of light, `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
+/// `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
 /// through the volume would take more than 10⁸ samples.
-pub(super) fn check(settings: &March, scene: &Scene, grid: &Grid) -> Result<()> {
-    if scene.model != Model::Light {
-        return Err(Error::new(Fault::Unsupported, "marching integrates light only")
-            .element("integrate.march")
-            .found("a scene of values or surfaces")
-            .remedy("use integrate: exact, which finds them without steps"));
-    }
+pub(super) fn check(settings: &March, grid: &Grid) -> Result<()> {
     let step = settings.step_mm;
     if !(step.is_finite() && step > 0.0) {
         return Err(Error::new(Fault::Spec, "the step is not usable")

@@ -1,9 +1,10 @@
 //! Checks on effects, and on what they leave for others to read.
 
 use super::clip::check_clip;
+use super::show::{check_marched, check_projection, check_transport, reads_transfer_function};
 use super::{Check, join};
 use crate::error::Result;
-use crate::spec::{EffectsSpec, IntegrateSpec, LightSpec, Pipeline};
+use crate::spec::{EffectsSpec, LightSpec, Pipeline};
 
 /// Light needs a transfer function; numbers of the values, and surfaces, have no use for one, nor numbers for shading.
 pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<()> {
@@ -12,22 +13,20 @@ pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<
     check.unread("effects.surfaces", project && surfaces, "effects.project shows a number of the values instead")?;
     let written = !pipeline.transfer_function.is_empty();
     let why = if project { "effects.project shows a number of the values" } else { "effects.surfaces shows surfaces" };
-    check.unread("transfer_function", written && (project || surfaces), why)?;
+    let read = reads_transfer_function(&effects);
+    check.unread("transfer_function", written && !read, why)?;
     check.unread("effects.shading", effects.shading.is_some() && project, "a number of the values has no light")?;
-    let marched = matches!(pipeline.integrate, Some(IntegrateSpec::March(_)));
-    check.unread("integrate.march", marched && (project || surfaces), "they are exact, and take no steps")?;
-    if project || surfaces {
-        return Ok(());
-    }
-    check.require("transfer_function", written, "at least one layer")
+    check_transport(check, &effects)?;
+    check_marched(check, pipeline)?;
+    check.require("transfer_function", written || !read, "at least one layer")
 }
 
 pub(super) fn check_effects(check: Check<'_>, effects: &EffectsSpec) -> Result<()> {
     if let Some(clip) = &effects.clip {
         check_clip(check, clip)?;
     }
-    if let Some([low, high]) = effects.project.as_ref().and_then(|project| project.window_hu) {
-        check.require("effects.project.window_hu", low < high, "[lowest, highest], the lower first")?;
+    if let Some(project) = &effects.project {
+        check_projection(check, project)?;
     }
     if let Some(surfaces) = &effects.surfaces {
         check.require("effects.surfaces", !surfaces.is_empty(), "at least one surface")?;

@@ -4,6 +4,7 @@ mod camera;
 mod clip;
 mod effects;
 mod pipeline;
+mod show;
 mod widget;
 
 pub(super) use pipeline::check_pipeline;

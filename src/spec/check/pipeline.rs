@@ -9,8 +9,10 @@ use super::{Check, join};
 use crate::error::Result;
 use crate::spec::source::Source;
 use crate::spec::{
-    ImageSpec, IntegrateSpec, LayerSpec, MarchSpec, OrderName, PhantomSpec, Pipeline, ValuesName, VolumeSpec,
+    AttenuationSpec, ImageSpec, IntegrateSpec, LayerSpec, MarchSpec, OrderName, PhantomSpec, Pipeline, ValuesName,
+    VolumeSpec,
 };
+use crate::transfer::attenuation::ENERGIES_KEV;
 
 /// Checks a pipeline as far as that is possible without its presets and its scan.
 pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> Result<()> {
@@ -65,13 +67,27 @@ fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
 }
 
 fn check_layer(check: Check<'_>, path: &str, layer: &LayerSpec) -> Result<()> {
-    check.exactly_one(path, &[("preset", layer.preset.is_some()), ("widgets", layer.widgets.is_some())])?;
+    let (preset, widgets) = (layer.preset.is_some(), layer.widgets.is_some());
+    let attenuation = layer.attenuation.as_ref();
+    let kinds = [("preset", preset), ("widgets", widgets), ("attenuation", attenuation.is_some())];
+    check.exactly_one(path, &kinds)?;
+    check_attenuation(check, path, layer)?;
     check.at_least(&join(path, "opacity_scale"), layer.opacity_scale, 0.0)?;
     check.above_zero(&join(path, "scale"), layer.scale)?;
     match &layer.widgets {
         Some(widgets) => check_widgets(check, &join(path, "widgets"), widgets),
         None => Ok(()),
     }
+}
+
+fn check_attenuation(check: Check<'_>, path: &str, layer: &LayerSpec) -> Result<()> {
+    let Some(AttenuationSpec { kev, scanned_at_kev }) = &layer.attenuation else { return Ok(()) };
+    let [low, high] = ENERGIES_KEV;
+    for (key, kev) in [("kev", Some(*kev)), ("scanned_at_kev", *scanned_at_kev)] {
+        let within = kev.is_none_or(|kev| (low..=high).contains(&kev));
+        check.require(&format!("{path}.attenuation.{key}"), within, &format!("{low} to {high} keV, as tabulated"))?;
+    }
+    check.unread(&join(path, "color"), layer.color.is_some(), "attenuation emits no light, so it has no colour")
 }
 
 fn check_integrate(check: Check<'_>, integrate: &IntegrateSpec) -> Result<()> {
@@ -92,6 +108,7 @@ fn check_march(check: Check<'_>, march: &MarchSpec) -> Result<()> {
     }
     check.above_zero(&path("step_mm"), march.step_mm)?;
     check.above_zero(&path("step_voxels"), march.step_voxels)?;
+    check.require(&path("bisections"), march.bisections.is_none_or(|n| n <= 32), "at most 32")?;
     let termination = march.termination_transmittance;
     let termination_path = path("termination_transmittance");
     check.require(&termination_path, termination.is_none_or(|t| (0.0..1.0).contains(&t)), "at least 0 and below 1")?;

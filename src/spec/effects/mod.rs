@@ -6,7 +6,7 @@ mod show;
 
 pub use clip::{ClipBoxSpec, ClipPlaneSpec, ClipSpec, RangeSpec, TrimSpec};
 pub use shading::{LightSpec, ShadingSpec};
-pub use show::{ProjectSpec, ProjectionOf, SurfaceSpec};
+pub use show::{ProjectSpec, ProjectionOf, SurfaceSpec, TransportName};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,10 +18,13 @@ pub struct EffectsSpec {
     /// Shows a part of the volume only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clip: Option<ClipSpec>,
+    /// What of the transfer function shows; `both` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<TransportName>,
     /// Levoy's gradient shading with the Blinn-Phong reflection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingSpec>,
-    /// Shows one number of the values along each ray as a grey, instead of light.
+    /// Shows one number of what lies along each ray as a grey, instead of light.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub project: Option<ProjectSpec>,
     /// Shows level surfaces, instead of light.
