@@ -4,6 +4,7 @@ mod analytic;
 mod cli;
 mod dicom;
 mod exact;
+mod formulas;
 mod hard_cases;
 mod house;
 mod image;

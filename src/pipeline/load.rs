@@ -1,5 +1,6 @@
 //! The scan that a spec names.
 
+use super::analytic;
 use crate::error::Result;
 use crate::io::{self, Scan, dicom::SeriesChoice};
 use crate::spec::{PhantomHead, PhantomSpec, Series, Spec, VolumeSource};
@@ -8,11 +9,12 @@ use crate::synthetic::{self, HeadPhantom};
 /// Reads or makes the volume of a spec, its values understood as the spec says.
 ///
 /// # Errors
-/// As [`io::load`] and [`synthetic::head`].
+/// As [`io::load`] and [`synthetic::head`], and `Fault::Spec` for a formula that cannot be read or sampled.
 pub fn load(spec: &Spec) -> Result<Scan> {
     let scan = match spec.volume_source() {
         VolumeSource::File { path, series } => io::load(&path, &choice(series))?,
         VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head)?,
+        VolumeSource::Analytic(formula) => analytic::load(spec, &formula)?,
     };
     Ok(Scan { volume: spec.interpret(scan.volume), ..scan })
 }

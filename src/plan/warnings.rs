@@ -1,5 +1,6 @@
 //! What a careful user should know of a plan before the first ray.
 
+use crate::scene::Model;
 use crate::spec::{Spec, ValuesName};
 use crate::transfer::{Optics, Side, TransferFunction};
 use crate::volume::Quantity;
@@ -10,13 +11,15 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     let mut warnings = Vec::new();
     let tf = &plan.scene.transfer_function;
     let ([low, high], [least, most]) = (tf.window(), volume.value_range);
-    if least < low || most > high {
+    // Neither concerns a picture of values or surfaces, which reads no transfer function.
+    let is_light = plan.scene.model == Model::Light;
+    if is_light && (least < low || most > high) {
         warnings.push(format!(
             "values from {least} to {most} go beyond the window {low} to {high} and look like its ends; \
              normalise.hu widens it"
         ));
     }
-    if shows_nothing(tf, volume.value_range) {
+    if is_light && shows_nothing(tf, volume.value_range) {
         warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
     }
     for (_, preset) in spec.layers() {

@@ -32,7 +32,7 @@ fn join(path: &str, part: &str) -> String {
 }
 
 /// The number of a text such as `1/255`.
-fn fraction(text: &str) -> Option<f64> {
+pub(super) fn fraction(text: &str) -> Option<f64> {
     let (above, below) = text.split_once('/')?;
     let quotient = above.trim().parse::<f64>().ok()? / below.trim().parse::<f64>().ok()?;
     quotient.is_finite().then_some(quotient)
