@@ -76,7 +76,7 @@ fn a_formula_is_written_as_it_is_rendered() {
     let folder = Folder::new("formula");
     let pipeline = folder.write(
         "ring.yaml",
-        "version: 1\nvolume: { analytic: { field: { expression: 3*x + sin(y) }, size: [5, 4, 3], spacing_mm: 2 } }\n\
+        "version: 1\nvolume: { values: hu, analytic: { field: { expression: 3*x + sin(y) }, size: [5, 4, 3], spacing_mm: 2 } }\n\
          effects: { surfaces: [{ hu: 0 }] }\n",
     );
     let nrrd = folder.path("ring.nrrd");

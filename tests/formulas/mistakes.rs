@@ -11,19 +11,19 @@ fn a_mistake_has_a_place_and_says_what_was_expected() {
         (
             format!("{{ field: {{ expression: x + t }}, {lattice} }}"),
             [
-                "scene.yaml:3:34: this is no expression in x, y and z (volume.analytic.field.expression)",
+                "scene.yaml:3:36: this is no expression in x, y and z (volume.analytic.field.expression)",
                 "t at character 5 of \"x + t\"",
                 "a number, x, y, z",
             ],
         ),
         (
             format!("{{ field: {{ expression: 3 * (x }}, {lattice} }}"),
-            ["scene.yaml:3:34", "the end at character 7", "an operator or )"],
+            ["scene.yaml:3:36", "the end at character 7", "an operator or )"],
         ),
         (
             format!("{{ field: {{ expression: ln(x + y + z + 6) }}, {lattice} }}"),
             [
-                "scene.yaml:3:20: the formula has no usable value at a point (volume.analytic.field)",
+                "scene.yaml:3:22: the formula has no usable value at a point (volume.analytic.field)",
                 "NaN at x = -3, y = -3, z = -3 mm",
                 "a finite number",
             ],
