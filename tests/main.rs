@@ -5,6 +5,7 @@ mod cli;
 mod clip;
 mod dicom;
 mod exact;
+mod formulas;
 mod hard_cases;
 mod house;
 mod image;

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use pellucid::Result;
 use pellucid::io::dicom::{SeriesDescription, write_series};
 use pellucid::io::nrrd;
+use pellucid::pipeline::{self, Options};
+use pellucid::spec::{Spec, VolumeSource};
 use pellucid::synthetic::{self, HeadPhantom};
 
 use super::stdout;
@@ -20,6 +22,8 @@ pub(super) struct Phantom {
 enum Kind {
     /// A head: skin, skull, brain, ventricles, airways and teeth, in HU
     Head(Head),
+    /// The formula of a pipeline's `volume: { analytic: … }`, sampled
+    Analytic(Analytic),
 }
 
 #[derive(Debug, clap::Args)]
@@ -46,20 +50,54 @@ struct Head {
     noise_hu: f64,
 }
 
+#[derive(Debug, clap::Args)]
+struct Analytic {
+    /// The pipeline, a YAML file
+    pipeline: PathBuf,
+
+    /// Set a key of the pipeline, such as `volume.analytic.size=64`; the value is YAML. May be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+
+    /// Write a NRRD file
+    #[arg(long, value_name = "FILE")]
+    nrrd: PathBuf,
+}
+
 impl Phantom {
     /// Makes the scan and writes it; the paths written go to stdout.
     pub(super) fn run(&self) -> Result<()> {
-        let Kind::Head(head) = &self.kind;
-        let volume = synthetic::head(&HeadPhantom { size: head.size, seed: head.seed, noise_hu: head.noise_hu })?;
-        if let Some(path) = &head.nrrd {
+        match &self.kind {
+            Kind::Head(head) => head.run(),
+            Kind::Analytic(analytic) => analytic.run(),
+        }
+    }
+}
+
+impl Head {
+    fn run(&self) -> Result<()> {
+        let volume = synthetic::head(&HeadPhantom { size: self.size, seed: self.seed, noise_hu: self.noise_hu })?;
+        if let Some(path) = &self.nrrd {
             nrrd::write(path, &volume, nrrd::Encoding::Gzip, &[])?;
             stdout::print(&path.display().to_string())?;
         }
-        if let Some(folder) = &head.dicom {
-            let description = SeriesDescription { description: "pellucid head phantom".to_string(), seed: head.seed };
+        if let Some(folder) = &self.dicom {
+            let description = SeriesDescription { description: "pellucid head phantom".to_string(), seed: self.seed };
             write_series(folder, &volume, &description)?;
             stdout::print(&folder.display().to_string())?;
         }
         Ok(())
+    }
+}
+
+impl Analytic {
+    fn run(&self) -> Result<()> {
+        let spec = Spec::load(&self.pipeline, &self.set)?;
+        if !matches!(spec.volume_source(), VolumeSource::Analytic(_)) {
+            return Err(spec.error("volume", "the volume of this pipeline is no formula").expected("the key analytic"));
+        }
+        let scan = pipeline::load(&spec, &Options::default())?;
+        nrrd::write(&self.nrrd, &scan.volume, nrrd::Encoding::Gzip, &[])?;
+        stdout::print(&self.nrrd.display().to_string())
     }
 }

@@ -1,7 +1,7 @@
 //! The scan that a spec names.
 
-use super::{Options, memory};
-use crate::error::{Error, Fault, Result};
+use super::{Options, analytic, memory};
+use crate::error::Result;
 use crate::io::{self, Scan, dicom::SeriesChoice};
 use crate::spec::{PhantomHead, PhantomSpec, Series, Spec, VolumeSource};
 use crate::synthetic::{self, HeadPhantom};
@@ -9,11 +9,14 @@ use crate::synthetic::{self, HeadPhantom};
 /// Reads or makes the volume of a spec, its values understood as the spec says.
 ///
 /// # Errors
-/// As [`io::load`] and [`synthetic::head`]; `Fault::Limit` for a scan that takes more memory than the options allow.
+/// As [`io::load`] and [`synthetic::head`], and `Fault::Spec` for a formula that cannot be read or sampled; `Fault::Limit`
+/// for a scan that takes more memory than the options allow.
 pub fn load(spec: &Spec, options: &Options) -> Result<Scan> {
+    let max_bytes = memory::limit_bytes(options);
     let scan = match spec.volume_source() {
-        VolumeSource::File { path, series } => io::load(&path, &choice(series), memory::limit_bytes(options))?,
-        VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head, memory::limit_bytes(options))?,
+        VolumeSource::File { path, series } => io::load(&path, &choice(series), max_bytes)?,
+        VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head, max_bytes)?,
+        VolumeSource::Analytic(formula) => analytic::load(spec, &formula, max_bytes)?,
     };
     Ok(Scan { volume: spec.interpret(scan.volume), ..scan })
 }
@@ -39,13 +42,7 @@ fn phantom(head: &PhantomHead, max_bytes: Option<u64>) -> Result<Scan> {
     ];
     let facts = facts.map(|(label, text)| (label.to_string(), text)).to_vec();
     let reading_bytes = head.making_bytes()?;
-    if let Some(most) = max_bytes.filter(|&most| reading_bytes > most) {
-        return Err(Error::new(Fault::Limit, "the phantom does not fit into memory")
-            .element("volume.phantom.head.size")
-            .found(format!("{reading_bytes} bytes for {} voxels along x and y", head.size))
-            .expected(format!("at most {most} bytes"))
-            .remedy("ask for a smaller size, or raise --max-memory"));
-    }
+    memory::refuse_beyond(max_bytes, reading_bytes, "volume.phantom.head.size")?;
     let volume = synthetic::head(&head)?;
     Ok(Scan { volume, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes })
 }

@@ -22,6 +22,19 @@ fn free_bytes() -> Option<u64> {
     Some(system.cgroup_limits().map_or(available, |group| available.min(group.free_memory)))
 }
 
+/// Refuses a volume made by rule that would take more than `max_bytes`; `element` is the key of its size.
+///
+/// # Errors
+/// `Fault::Limit`.
+pub(super) fn refuse_beyond(max_bytes: Option<u64>, needed: u64, element: &str) -> Result<()> {
+    let Some(most) = max_bytes.filter(|&most| needed > most) else { return Ok(()) };
+    Err(Error::new(Fault::Limit, "the volume does not fit into memory")
+        .element(element)
+        .found(format!("{needed} bytes"))
+        .expected(format!("at most {most} bytes"))
+        .remedy("ask for a smaller size, or raise --max-memory"))
+}
+
 /// Refuses a plan that needs more memory than it may have, before any of it is allocated.
 ///
 /// # Errors

@@ -1,5 +1,6 @@
 //! From a spec to a picture: load, plan, clip, integrate, encode, and a sidecar that says how it was made.
 
+mod analytic;
 mod certify;
 mod clip;
 mod digest;

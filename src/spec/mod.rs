@@ -8,6 +8,7 @@
 //! path of everything it reads gives it types. So every error, also one found later on by a check or by the plan, names
 //! file, line, column and key path, or the override that is to blame.
 
+mod analytic;
 mod camera;
 mod check;
 mod color;
@@ -16,6 +17,7 @@ mod effects;
 mod integrate;
 mod library;
 mod overrides;
+mod per_axis;
 mod pipeline;
 mod preset;
 mod schema;
@@ -25,6 +27,7 @@ mod tree;
 mod typed;
 mod widget;
 
+pub use analytic::{AnalyticSpec, FieldSpec, MarschnerLobbSpec, RampSpec, SphereSpec, TorusSpec};
 pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
 pub use effects::{
@@ -36,6 +39,7 @@ pub use integrate::{
     RuleName,
 };
 pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset};
+pub use per_axis::PerAxis;
 pub use pipeline::{
     AttenuationSpec, BackgroundSpec, Bits, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec, PhantomHead, PhantomSpec,
     Pipeline, Series, ValuesName, VolumeSpec,
@@ -73,6 +77,8 @@ pub enum VolumeSource {
     },
     /// A volume made by rule.
     Phantom(PhantomSpec),
+    /// A formula.
+    Analytic(AnalyticSpec),
 }
 
 impl Spec {
@@ -121,9 +127,10 @@ impl Spec {
     /// Where the volume comes from.
     pub fn volume_source(&self) -> VolumeSource {
         let volume = &self.pipeline.volume;
-        match (&volume.phantom, &volume.source) {
-            (Some(phantom), _) => VolumeSource::Phantom(phantom.clone()),
-            (None, source) => VolumeSource::File {
+        match (&volume.phantom, &volume.analytic, &volume.source) {
+            (Some(phantom), ..) => VolumeSource::Phantom(phantom.clone()),
+            (None, Some(analytic), _) => VolumeSource::Analytic(analytic.clone()),
+            (None, None, source) => VolumeSource::File {
                 path: self.source.resolve("volume.source", source.as_deref().unwrap_or(Path::new(""))),
                 series: volume.series.clone(),
             },
@@ -150,6 +157,11 @@ impl Spec {
     /// An error about what is written at a key path such as `camera.position_mm`, with its place.
     pub fn error(&self, key_path: &str, what: impl Into<String>) -> Error {
         self.source.error(key_path, what)
+    }
+
+    /// An error of what was made by the words at a key path, with their place in addition.
+    pub fn located(&self, key_path: &str, error: Error) -> Error {
+        self.source.located(key_path, error)
     }
 }
 

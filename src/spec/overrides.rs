@@ -5,7 +5,7 @@ use crate::error::{Error, Fault, Result};
 
 /// Keys that exclude each other, by their paths: a scan is one or the other, and so is a method.
 const ALTERNATIVES: [&[&str]; 3] = [
-    &["volume.source", "volume.phantom"],
+    &["volume.source", "volume.phantom", "volume.analytic"],
     &["integrate.exact", "integrate.march", "integrate.reference"],
     &["integrate.march.step_mm", "integrate.march.step_voxels"],
 ];

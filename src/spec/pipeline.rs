@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CameraSpec, Color, EffectsSpec, IntegrateSpec, Widget};
+use super::{AnalyticSpec, CameraSpec, Color, EffectsSpec, IntegrateSpec, Widget};
 
 /// A pipeline: which scan, what of it shows, from where, how exactly it is integrated, and the picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -48,7 +48,7 @@ pub struct Pipeline {
     pub output: Option<PathBuf>,
 }
 
-/// The scan: exactly one of `source` and `phantom`.
+/// The scan: exactly one of `source`, `phantom` and `analytic`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VolumeSpec {
@@ -58,10 +58,13 @@ pub struct VolumeSpec {
     /// A volume made by rule, in HU.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phantom: Option<PhantomSpec>,
+    /// A formula, sampled; its values are arbitrary unless `values` says otherwise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub analytic: Option<AnalyticSpec>,
     /// Which series of a DICOM folder: `largest`, the default, or a Series Instance UID.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Series>,
-    /// What the values measure; by default what the file says.
+    /// What the values measure; by default what the file says, and arbitrary for a formula.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub values: Option<ValuesName>,
     /// Added to every value to make it HU, such as -1024 for scans stored as HU + 1024. The values are then HU.

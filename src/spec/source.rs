@@ -83,6 +83,11 @@ impl Source {
         self.place(Error::new(Fault::Spec, what).element(key_path), self.tree.nearest(key_path).origin)
     }
 
+    /// An error of what was made by the words at a key path, with their place.
+    pub(super) fn located(&self, key_path: &str, error: Error) -> Error {
+        self.place(error.element(key_path), self.tree.nearest(key_path).origin)
+    }
+
     /// What is written at a key path, for messages.
     pub(super) fn found(&self, key_path: &str) -> String {
         self.tree.nearest(key_path).describe()

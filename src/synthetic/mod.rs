@@ -1,4 +1,4 @@
-//! Volumes made by formula: the CT head phantom.
+//! Volumes made by formula: the CT head phantom, and [analytic] fields.
 //!
 //! The phantom is a head as a CT scanner would see it, for pictures and tests without a patient: skin, fat, muscle,
 //! skull, teeth, brain, airways and vessels filled with contrast medium, in HU. It is defined in patient coordinates
@@ -14,6 +14,7 @@
 //! `sdf` holds the solids, `tissue` what they are made of, `noise` the counter-based hash behind sponge, folds and
 //! scanner noise.
 
+pub mod analytic;
 mod anatomy;
 mod noise;
 mod raster;

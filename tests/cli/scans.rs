@@ -70,3 +70,26 @@ fn what_cannot_be_rendered_is_described_all_the_same() {
     assert!(report["series"][0]["refused"].is_string(), "found {report:#}");
     assert_eq!(report["files"].as_array().map(Vec::len), Some(slices.len() - 1));
 }
+
+#[test]
+fn a_formula_is_written_as_it_is_rendered() {
+    let folder = Folder::new("formula");
+    let pipeline = folder.write(
+        "ring.yaml",
+        "version: 1\nvolume: { values: hu, analytic: { field: { expression: 3*x + sin(y) }, size: [5, 4, 3], spacing_mm: 2 } }\n\
+         effects: { surfaces: [{ hu: 0 }] }\n",
+    );
+    let nrrd = folder.path("ring.nrrd");
+    pellucid(&["phantom", "analytic", &pipeline, "--nrrd", &nrrd]).success();
+    let info = |path: &str| -> serde_json::Value {
+        let text = pellucid(&["info", path, "--format", "json"]).success().stdout;
+        serde_json::from_str(&text).expect("valid JSON")
+    };
+    let (written, made) = (info(&nrrd), info(&pipeline));
+    for key in ["dims", "values_sha256", "value_range", "quantity", "index_to_lps_mm"] {
+        assert_eq!(written[key], made[key], "{key}");
+    }
+    assert_eq!(made["facts"]["formula"], "3*x + sin(y)", "info says what was made");
+    let head = folder.pipeline();
+    pellucid(&["phantom", "analytic", &head, "--nrrd", &nrrd]).failure(3).says(&["head.yaml:2", "is no formula"]);
+}

@@ -176,7 +176,8 @@ fn numbers_out_of_range_are_found() {
 fn keys_that_exclude_each_other_are_found() {
     check(
         &SHORT.replace("phantom: head", "phantom: «head», source: scan.nrrd"),
-        "two keys exclude each other (volume.phantom): found source and phantom, expected exactly one of source, phantom",
+        "two keys exclude each other (volume.phantom): found source and phantom, expected exactly one of source, phantom, \
+         analytic",
     );
     check_after(
         "integrate: { march: { step_mm: 1, step_voxels: «0.5» } }\n",

@@ -3,12 +3,13 @@
 mod report;
 mod text;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pellucid::Result;
 use pellucid::io::dicom::{Folder, SeriesChoice, scan_folder};
-use pellucid::io::{self, load};
-use pellucid::pipeline::{Options, memory};
+use pellucid::io::{self, Scan, load};
+use pellucid::pipeline::{self, Options, memory};
+use pellucid::spec::Spec;
 
 use super::{Format, stdout};
 use report::Report;
@@ -16,7 +17,7 @@ use report::Report;
 /// Arguments of `pellucid info`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Info {
-    /// A folder of DICOM files, a DICOM file, or a .nrrd or .nhdr file
+    /// A folder of DICOM files, a DICOM file, a .nrrd or .nhdr file, or a pipeline, whose volume is meant
     path: PathBuf,
 
     /// Series of a DICOM folder: its UID, number or description; the largest unless told
@@ -33,8 +34,7 @@ impl Info {
     /// the reason as an error.
     pub(super) fn run(&self) -> Result<()> {
         let folder = self.folder()?;
-        let choice = self.series.clone().map_or(SeriesChoice::Largest, SeriesChoice::Named);
-        let scan = load(&self.path, &choice, memory::limit_bytes(&Options::default()));
+        let scan = self.scan();
         let report = Report::new(folder.as_ref(), scan.as_ref().ok());
         match self.format {
             Format::Text => stdout::print(&text::of(&report, scan.as_ref().ok()))?,
@@ -43,10 +43,27 @@ impl Info {
         scan.map(|_| ())
     }
 
+    fn scan(&self) -> Result<Scan> {
+        if is_pipeline(&self.path) {
+            let series = self.series.iter().map(|series| format!("volume.series={series}"));
+            return pipeline::load(&Spec::load(&self.path, &series.collect::<Vec<_>>())?, &Options::default());
+        }
+        let choice = self.series.clone().map_or(SeriesChoice::Largest, SeriesChoice::Named);
+        load(&self.path, &choice, memory::limit_bytes(&Options::default()))
+    }
+
+    /// The series of a DICOM folder that is named itself.
     fn folder(&self) -> Result<Option<Folder>> {
+        if is_pipeline(&self.path) {
+            return Ok(None);
+        }
         match io::format_of(&self.path)? {
             io::Format::Dicom => scan_folder(&self.path).map(Some),
             io::Format::Nrrd => Ok(None),
         }
     }
+}
+
+fn is_pipeline(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml")
 }

@@ -1,5 +1,6 @@
 //! What types cannot say: ranges, exactly one of several keys, and keys that nothing would read.
 
+mod analytic;
 mod camera;
 mod clip;
 mod effects;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::analytic::check_analytic;
 use super::camera::check_camera;
 use super::effects::{check_effects, check_what_shows};
 use super::widget::check_widgets;
@@ -49,7 +50,15 @@ fn extension(path: &Path) -> String {
 }
 
 fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
-    check.exactly_one("volume", &[("source", volume.source.is_some()), ("phantom", volume.phantom.is_some())])?;
+    let sources = [
+        ("source", volume.source.is_some()),
+        ("phantom", volume.phantom.is_some()),
+        ("analytic", volume.analytic.is_some()),
+    ];
+    check.exactly_one("volume", &sources)?;
+    if let Some(analytic) = &volume.analytic {
+        check_analytic(check, "volume.analytic", analytic)?;
+    }
     if let Some(PhantomSpec::Head(head)) = &volume.phantom {
         let size = head.size.map(f64::from);
         check.require(
@@ -60,6 +69,7 @@ fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
     }
     let has_series = volume.series.is_some();
     check.unread("volume.series", has_series && volume.phantom.is_some(), "a phantom has no series")?;
+    check.unread("volume.series", has_series && volume.analytic.is_some(), "a formula has no series")?;
     let is_file = volume.source.as_deref().is_some_and(|p| matches!(extension(p).as_str(), "nrrd" | "nhdr"));
     check.unread("volume.series", has_series && is_file, "a NRRD file has no series")?;
     let contradiction = volume.values == Some(ValuesName::Arbitrary) && volume.shift_hu.is_some();
