@@ -15,7 +15,7 @@ fn made(analytic: &str) -> Result<Volume, Error> {
         "version: 1\nvolume:\n  analytic: {analytic}\neffects: {{ project: {{ show: maximum, window_hu: [0, 1] }} }}\n"
     );
     let spec = Spec::from_text(&text, Path::new("scene.yaml"), &[])?;
-    pipeline::load(&spec).map(|scan| scan.volume)
+    pipeline::load(&spec, &pipeline::Options::default()).map(|scan| scan.volume)
 }
 
 fn volume(analytic: &str) -> Volume {
