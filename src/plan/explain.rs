@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::scene::{Background, Camera, Light, Projection, Shading};
 
-use super::Plan;
+use super::{Plan, effects};
 
 /// The plan in words: what is computed in order with its memory, from where, what is not computed and why, warnings.
 pub fn explain(plan: &Plan) -> String {
@@ -19,6 +19,10 @@ pub fn explain(plan: &Plan) -> String {
     text.push('\n');
     line(&mut text, "layers", &plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + "));
     line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    let effects = effects::in_words(&plan.scene.effects);
+    if !effects.is_empty() {
+        line(&mut text, "effects", &effects.join(", "));
+    }
     line(&mut text, "behind", &describe_background(plan.scene.background));
     line(&mut text, "camera", &describe_camera(&plan.scene.camera));
     line(&mut text, "output", &plan.output.path.display().to_string());
@@ -132,6 +136,7 @@ pub fn explain_json(plan: &Plan) -> Value {
             "layers": layers.collect::<Vec<_>>()
         },
         "shading": plan.scene.shading.as_ref().map(shading_json),
+        "effects": effects::effects_json(&plan.scene.effects),
         "background": match plan.scene.background {
             Background::Transparent => json!("transparent"),
             Background::Color(rgb) => json!(rgb),

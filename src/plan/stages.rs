@@ -9,7 +9,8 @@ use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order,
 /// One stage of the computation.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Stage {
-    /// The module that does it: `volume`, `field`, `classify`, `integrate`, `image`, `oracle`.
+    /// The module that does it: `volume`, `field`, `classify`, `integrate`, `image`, `oracle`; `light` is a part of
+    /// `integrate`.
     pub name: &'static str,
     /// What it does, with the kernel it uses.
     pub what: String,
@@ -48,6 +49,12 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     }
     if plan.scene.model == Model::Light {
         stages.push(classify(plan));
+    }
+    if plan.demand.visibility {
+        let lights = plan.scene.occluded_directions().len() as u64;
+        let towards = if lights == 1 { "1 light".to_owned() } else { format!("{lights} lights") };
+        let what = format!("transmittance towards {towards} at the voxels that rays reach, f32");
+        stages.push(Stage { name: "light", what, bytes: 4 * lights * voxels });
     }
     let pixels: u64 = plan.scene.camera.size().iter().map(|&n| n as u64).product();
     stages.push(Stage {
@@ -117,7 +124,11 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
         Model::Surfaces(_) => return format!("{method}/{}/surfaces/f64", volume.storage.name()),
     }
     let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
-    let shader = if scene.shading.is_some() { "lit" } else { "unlit" };
+    let shader = match &scene.shading {
+        _ if scene.effects.change_light() => "atmosphere",
+        Some(_) => "lit",
+        None => "unlit",
+    };
     format!("{method}/{}/{classifier}/{shader}", volume.storage.name())
 }
 

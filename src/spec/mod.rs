@@ -27,7 +27,10 @@ mod widget;
 
 pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
-pub use effects::{EffectsSpec, LightSpec, ProjectSpec, ProjectionOf, ShadingSpec, SurfaceSpec};
+pub use effects::{
+    DepthCueSpec, EffectsSpec, ExpFogSpec, FogSpec, HazeSpec, LightSpec, LinearFogSpec, ProjectSpec, ProjectionOf,
+    ScatteringSpec, ShadingSpec, ShadowsSpec, SurfaceSpec,
+};
 pub use integrate::{
     ColorsName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName,
     RuleName,

@@ -2,6 +2,7 @@
 
 mod camera;
 mod effects;
+mod light;
 mod pipeline;
 mod widget;
 
