@@ -3,6 +3,7 @@
 mod analytic;
 mod cli;
 mod dicom;
+mod effects;
 mod exact;
 mod hard_cases;
 mod house;

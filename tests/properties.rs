@@ -10,9 +10,9 @@ use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
 use proptest::prelude::*;
 
 /// Rays per case.
-const RAYS: usize = 3;
+pub(crate) const RAYS: usize = 3;
 
-fn direction() -> impl Strategy<Value = DVec3> {
+pub(crate) fn direction() -> impl Strategy<Value = DVec3> {
     (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64)
         .prop_map(|(x, y, z)| DVec3::new(x, y, z))
         .prop_filter("a direction needs a length", |d| d.length() > 0.1)
@@ -35,7 +35,7 @@ fn affine() -> impl Strategy<Value = DAffine3> {
     )
 }
 
-fn volume() -> impl Strategy<Value = Volume> {
+pub(crate) fn volume() -> impl Strategy<Value = Volume> {
     let dims = prop::array::uniform3(1usize..6);
     let rescale = prop_oneof![
         Just(Rescale::IDENTITY),
@@ -82,13 +82,13 @@ fn weight() -> impl Strategy<Value = Weight> {
         .prop_map(|knots| Weight::new(knots.into_iter().map(|(g, w)| [g, w]).collect()).expect("finite knots"))
 }
 
-fn transfer_function() -> impl Strategy<Value = TransferFunction> {
+pub(crate) fn transfer_function() -> impl Strategy<Value = TransferFunction> {
     let term = (curve(), prop::option::of(weight())).prop_map(|(curve, weight)| Term { curve, weight });
     prop::collection::vec(term, 1..4)
         .prop_map(|terms| TransferFunction::new([-1024.0, 3071.0], 1000.0, terms).expect("a finite domain"))
 }
 
-fn shading() -> impl Strategy<Value = Shading> {
+pub(crate) fn shading() -> impl Strategy<Value = Shading> {
     let strengths = (0.0..0.4f64, 0.0..1.0f64, 0.0..0.6f64, prop_oneof![Just(1.0), Just(2.0), 1.0..40.0f64]);
     (strengths, any::<bool>(), prop_oneof![Just(0.0), 1.0..80.0f64], direction()).prop_map(
         |((ambient, diffuse, specular, shininess), two_sided, soft_gradient_per_mm, towards)| Shading {
@@ -107,7 +107,7 @@ fn shading() -> impl Strategy<Value = Shading> {
 }
 
 /// A camera that looks at the volume from `distance` times its size, from inside for small ones.
-fn camera(grid: &Grid, from: DVec3, distance: f64, parallel: bool) -> Camera {
+pub(crate) fn camera(grid: &Grid, from: DVec3, distance: f64, parallel: bool) -> Camera {
     let center = grid.center_mm();
     let radius = grid.corners_mm().iter().map(|c| c.distance(center)).fold(0.0, f64::max);
     let projection = if parallel {
@@ -121,7 +121,7 @@ fn camera(grid: &Grid, from: DVec3, distance: f64, parallel: bool) -> Camera {
 
 /// The pixels of a scene by the exact integrator, held against the oracle. A shaded bound rests on the same proof as an
 /// unshaded one, so both are held to it.
-fn held_to_tolerance_and_bound(volume: &Volume, scene: &Scene, tolerance: f64) -> Result<(), TestCaseError> {
+pub(crate) fn held_to_tolerance_and_bound(volume: &Volume, scene: &Scene, tolerance: f64) -> Result<(), TestCaseError> {
     let oracle = Oracle::new(volume, scene);
     for precision in [Precision::Single, Precision::Double] {
         let tracer = tracer(volume, scene, tolerance, precision);

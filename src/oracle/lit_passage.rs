@@ -95,7 +95,7 @@ impl<'a> LitPassage<'a> {
             // Linear fog ends at 0, on a straight line.
             matches!(fog.law, FogLaw::Linear { .. }) || near < NEGLIGIBLE || near <= LARGEST_CHANGE * far
         });
-        let depth_per_mm = scene.depth_per_mm(self.ray);
+        let depth_per_mm = scene.depth_per_mm(self.ray.direction);
         let cue = effects.depth_cue.is_none_or(|cue| {
             cue.factor(at_mm(a) * depth_per_mm) <= LARGEST_CHANGE * cue.factor(at_mm(b) * depth_per_mm)
         });

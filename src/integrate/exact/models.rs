@@ -1,7 +1,7 @@
 //! Pictures that are not of light: one number of the values along a ray, or level surfaces. In f64, exact up to rounding.
 
 use crate::field::Voxel;
-use crate::scene::{Ray, Shading, Surface, ValueModel, ValueOf};
+use crate::scene::{Ray, Scene, Surface, ValueModel, ValueOf};
 use crate::volume::{Grid, Rescale};
 
 use super::Traced;
@@ -37,19 +37,17 @@ pub(super) fn show_surfaces<V: Voxel>(
     grid: &Grid,
     rescale: Rescale,
     surfaces: &[Surface],
-    shading: Option<&Shading>,
+    scene: &Scene,
     ray: &Ray,
 ) -> Traced {
     let levels: Vec<f64> = surfaces.iter().map(|s| rescale.stored(s.value)).collect();
     let mut traced = Traced { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, bound: ROUNDING, pieces: 0 };
     crossings(lattice, grid, ray, &levels, |crossing| {
         let Surface { opacity, color, .. } = surfaces[crossing.level];
-        let (reflected, highlight) = match shading {
-            Some(shading) => shading.factors(crossing.gradient_per_mm.into(), ray.direction),
-            None => ([1.0; 3], [0.0; 3]),
-        };
+        // Between surfaces nothing absorbs, so that they cast no shadows.
+        let (reflected, added) = scene.factors(ray, crossing.at_mm, crossing.gradient_per_mm.into(), |_| 1.0);
         for c in 0..3 {
-            traced.radiance[c] += traced.transmittance * opacity * (color[c] * reflected[c] + highlight[c]);
+            traced.radiance[c] += traced.transmittance * opacity * (color[c] * reflected[c] + added[c]);
         }
         traced.opacity += traced.transmittance * opacity;
         traced.transmittance -= traced.transmittance * opacity;

@@ -13,7 +13,7 @@ pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
 
 use crate::error::{Error, Fault, Result};
-use crate::plan::March;
+use crate::plan::{Emission, March};
 use crate::scene::{Model, Scene};
 use crate::volume::Grid;
 
@@ -23,7 +23,7 @@ const MOST_SAMPLES_PER_RAY: f64 = 1e8;
 /// Refuses settings that mean nothing or would take for ever.
 ///
 /// # Errors
-/// `Fault::Unsupported` for a scene that is not of light, `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
+/// `Fault::Unsupported` for a scene that is not of light, and for haze with emission per sample, `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
 /// through the volume would take more than 10⁸ samples.
 pub(super) fn check(settings: &March, scene: &Scene, grid: &Grid) -> Result<()> {
     if scene.model != Model::Light {
@@ -45,6 +45,12 @@ pub(super) fn check(settings: &March, scene: &Scene, grid: &Grid) -> Result<()> 
             .element("integrate.march.termination_transmittance")
             .found(least.to_string())
             .expected("a number from 0 (never) to below 1"));
+    }
+    if scene.effects.haze.is_some() && settings.emission == Emission::PerSample {
+        return Err(Error::new(Fault::Unsupported, "haze has no samples to emit by")
+            .element("integrate.march.emission")
+            .found("emission per sample")
+            .remedy("use emission: per-length, the default, or leave haze out"));
     }
     // The longest chord of a parallelepiped is one of its four diagonals.
     let corners = grid.corners_mm();
