@@ -9,6 +9,8 @@ pub struct Demand {
     pub gradient_magnitude: bool,
     /// Value ranges of blocks of cells: skipping of empty space.
     pub macrocells: bool,
+    /// Transmittance towards directional lights at the voxels: shadows and scattering.
+    pub visibility: bool,
 }
 
 impl Demand {
@@ -19,6 +21,7 @@ impl Demand {
             gradient: self.gradient || other.gradient,
             gradient_magnitude: self.gradient_magnitude || other.gradient_magnitude,
             macrocells: self.macrocells || other.macrocells,
+            visibility: self.visibility || other.visibility,
         }
     }
 }

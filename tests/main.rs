@@ -4,6 +4,7 @@ mod analytic;
 mod cli;
 mod clip;
 mod dicom;
+mod effects;
 mod exact;
 mod formulas;
 mod hard_cases;

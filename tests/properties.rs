@@ -10,7 +10,7 @@ use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
 use proptest::prelude::*;
 
 /// Rays per case.
-const RAYS: usize = 3;
+pub(crate) const RAYS: usize = 3;
 
 pub(crate) fn direction() -> impl Strategy<Value = DVec3> {
     (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64)

@@ -51,6 +51,25 @@ impl Chord {
         })
     }
 
+    /// The part inside the domain of a ray from a lattice point; `None` if it has no length. The entry is exact, so that a
+    /// ray along the border does not leave it by rounding.
+    pub(super) fn from_voxel(grid: &Grid, voxel: [usize; 3], direction: DVec3) -> Option<Self> {
+        let entry_index = DVec3::from_array(voxel.map(|i| i as f64));
+        let index_per_mm = grid.lps_mm_to_index().transform_vector3(direction);
+        let (low, high) = grid.index_bounds();
+        let mut length_mm = f64::INFINITY;
+        for a in (0..3).filter(|&a| index_per_mm[a] != 0.0) {
+            let face = if index_per_mm[a] < 0.0 { low[a] } else { high[a] };
+            length_mm = length_mm.min((face - entry_index[a]) / index_per_mm[a]);
+        }
+        (length_mm > 0.0 && length_mm.is_finite()).then_some(Chord {
+            entry_mm: 0.0,
+            length_mm,
+            entry_index,
+            index_per_mm,
+        })
+    }
+
     /// Continuous voxel index at a distance from the entry.
     pub(super) fn index_at(&self, mm: f64) -> DVec3 {
         self.entry_index + mm * self.index_per_mm
@@ -110,6 +129,16 @@ mod tests {
         let (near, far) = (near.unwrap(), far.unwrap());
         assert!((near.length_mm - far.length_mm).abs() < 1e-8, "{} and {}", near.length_mm, far.length_mm);
         assert!((near.entry_index - far.entry_index).length() < 1e-8, "{} and {}", near.entry_index, far.entry_index);
+    }
+
+    #[test]
+    fn from_a_border_voxel_along_the_border_it_stays_inside() {
+        // 9.1 mm over 0.7 mm is more than 13 in floating point.
+        let grid = Grid::axis_aligned([14, 14, 1], DVec3::splat(0.7)).unwrap();
+        let length = |direction| Chord::from_voxel(&grid, [13, 2, 0], direction).map(|c| c.length_mm);
+        assert!(length(DVec3::Y).is_some_and(|l| (l - 7.7).abs() < 1e-12), "found {:?}", length(DVec3::Y));
+        assert!(length(DVec3::Z).is_some_and(|l| (l - 0.35).abs() < 1e-12), "half of one voxel");
+        assert_eq!(length(DVec3::X), None, "outwards there is nothing");
     }
 
     #[test]

@@ -3,9 +3,11 @@
 //! [`render`] is all a caller needs. A kernel is chosen once per frame by type (voxels, transfer function, shading); the
 //! choices of a [`Schedule`] change how long a picture takes, never the picture.
 
+mod atmosphere;
 mod chord;
 mod empty_space;
 pub mod exact;
+mod light_volumes;
 mod march;
 mod reference;
 mod select;
@@ -83,7 +85,7 @@ pub fn render_scheduled(
     let frame = Frame { volume, scene, schedule, progress };
     match method {
         Method::March(settings) => {
-            march::check(settings, volume.grid())?;
+            march::check(settings, scene, volume.grid())?;
             match &scene.model {
                 Model::Light => select::march(&frame, settings),
                 Model::Value(model) => march::show_number(&frame, settings, model),

@@ -1,5 +1,6 @@
 //! From what a plan says to the types of a kernel, once per frame.
 
+use super::atmosphere::Atmosphere;
 use super::empty_space::EmptySpace;
 use super::march::{Classified, Kernel};
 use super::shade::{Lit, Shader, Unlit};
@@ -31,6 +32,10 @@ fn by_shader<V: Voxel, C: Classifier<f32>>(
     voxels: &[V],
     classifier: &C,
 ) -> Result<Rendered> {
+    if frame.scene.effects.change_light() {
+        let atmosphere = Atmosphere::new(frame.volume, frame.scene);
+        return run(frame, settings, voxels, classifier, &atmosphere);
+    }
     match &frame.scene.shading {
         None => run(frame, settings, voxels, classifier, &Unlit),
         Some(shading) => run(frame, settings, voxels, classifier, &Lit::new(shading)),

@@ -3,12 +3,13 @@
 use glam::DVec3;
 
 use crate::classify::Rgbs;
-use crate::scene::Shading;
+use crate::field::Cell;
+use crate::scene::{Haze, Shading};
 
 /// Shades a sample. Chosen by type, once per frame.
 pub(super) trait Shader: Sync {
-    /// Whether the gradient is read at all.
-    const READS_GRADIENT: bool;
+    /// Whether it does anything at all.
+    const SHADES: bool;
     /// Name in kernel names.
     const NAME: &'static str;
     /// What is constant along a ray.
@@ -17,22 +18,41 @@ pub(super) trait Shader: Sync {
     /// Computes what is constant along a ray of this direction.
     fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
 
-    /// Emission after shading, for a gradient in HU/mm.
-    fn shade(&self, aim: &Self::Aim, sample: Rgbs<f32>, gradient_per_mm: [f32; 3]) -> Rgbs<f32>;
+    /// What is there to be seen of a sample; `gradient` gives the gradient there, HU/mm.
+    fn shade(&self, aim: &Self::Aim, sample: Rgbs<f32>, spot: &Spot, gradient: impl FnOnce() -> [f32; 3]) -> Rgbs<f32>;
+
+    /// What is there where the transfer function shows nothing.
+    #[inline(always)]
+    fn space(&self) -> Rgbs<f32> {
+        [0.0; 4]
+    }
+
+    /// The medium that is there, if it fills the space around the volume too.
+    #[inline(always)]
+    fn haze(&self) -> Option<&Haze> {
+        None
+    }
+}
+
+/// Where a sample is.
+pub(super) struct Spot {
+    pub(super) cell: Cell,
+    /// From the ray's origin.
+    pub(super) distance_mm: f64,
 }
 
 /// Emission and absorption alone.
 pub(super) struct Unlit;
 
 impl Shader for Unlit {
-    const READS_GRADIENT: bool = false;
+    const SHADES: bool = false;
     const NAME: &'static str = "unlit";
     type Aim = ();
 
     fn aim(&self, _direction: DVec3, _aim: &mut ()) {}
 
     #[inline(always)]
-    fn shade(&self, _aim: &(), sample: Rgbs<f32>, _gradient_per_mm: [f32; 3]) -> Rgbs<f32> {
+    fn shade(&self, _: &(), sample: Rgbs<f32>, _: &Spot, _: impl FnOnce() -> [f32; 3]) -> Rgbs<f32> {
         sample
     }
 }
@@ -72,10 +92,39 @@ impl<'a> Lit<'a> {
         let lit = if self.two_sided { cosine.abs() } else { cosine.max(0.0) };
         lit.min(1.0)
     }
+
+    /// Factors of the emission and of the extinction at a gradient in HU/mm, with the terms of each light, given by its
+    /// index, multiplied by a share of its own.
+    #[inline(always)]
+    pub(super) fn factors(
+        &self,
+        aim: &[Beam],
+        gradient_per_mm: [f32; 3],
+        share: impl Fn(usize) -> f32,
+    ) -> ([f32; 3], [f32; 3]) {
+        let mut reflected = [self.ambient; 3];
+        let mut highlight = [0.0; 3];
+        let square = dot(gradient_per_mm, gradient_per_mm);
+        if square > 0.0 {
+            let fade = square / (square + self.soft_square);
+            let toward_normal = -1.0 / square.sqrt();
+            for (light, beam) in aim.iter().enumerate() {
+                let fade = fade * share(light);
+                let lit = self.facing(dot(gradient_per_mm, beam.towards) * toward_normal);
+                let shine = self.facing(dot(gradient_per_mm, beam.half) * toward_normal);
+                let gloss = if lit > 0.0 { shine.powf(self.shininess) } else { 0.0 };
+                for c in 0..3 {
+                    reflected[c] += beam.diffuse[c] * (fade * lit);
+                    highlight[c] += beam.specular[c] * (fade * gloss);
+                }
+            }
+        }
+        (reflected, highlight)
+    }
 }
 
 impl Shader for Lit<'_> {
-    const READS_GRADIENT: bool = true;
+    const SHADES: bool = true;
     const NAME: &'static str = "lit";
     type Aim = Vec<Beam>;
 
@@ -90,23 +139,14 @@ impl Shader for Lit<'_> {
     }
 
     #[inline(always)]
-    fn shade(&self, aim: &Vec<Beam>, [r, g, b, extinction]: Rgbs<f32>, gradient_per_mm: [f32; 3]) -> Rgbs<f32> {
-        let mut reflected = [self.ambient; 3];
-        let mut highlight = [0.0; 3];
-        let square = dot(gradient_per_mm, gradient_per_mm);
-        if square > 0.0 {
-            let fade = square / (square + self.soft_square);
-            let toward_normal = -1.0 / square.sqrt();
-            for beam in aim {
-                let lit = self.facing(dot(gradient_per_mm, beam.towards) * toward_normal);
-                let shine = self.facing(dot(gradient_per_mm, beam.half) * toward_normal);
-                let gloss = if lit > 0.0 { shine.powf(self.shininess) } else { 0.0 };
-                for c in 0..3 {
-                    reflected[c] += beam.diffuse[c] * (fade * lit);
-                    highlight[c] += beam.specular[c] * (fade * gloss);
-                }
-            }
-        }
+    fn shade(
+        &self,
+        aim: &Vec<Beam>,
+        [r, g, b, extinction]: Rgbs<f32>,
+        _: &Spot,
+        gradient: impl FnOnce() -> [f32; 3],
+    ) -> Rgbs<f32> {
+        let (reflected, highlight) = self.factors(aim, gradient(), |_| 1.0);
         let shaded = |q: f32, c: usize| q * reflected[c] + extinction * highlight[c];
         [shaded(r, 0), shaded(g, 1), shaded(b, 2), extinction]
     }
@@ -121,6 +161,8 @@ fn dot([ax, ay, az]: [f32; 3], [bx, by, bz]: [f32; 3]) -> f32 {
 mod tests {
     use super::*;
     use crate::scene::Light;
+
+    const SPOT: Spot = Spot { cell: Cell { corner: [0; 3], fraction: [0.0; 3] }, distance_mm: 0.0 };
 
     fn shading(two_sided: bool, soft_gradient_per_mm: f64) -> Shading {
         Shading {
@@ -149,7 +191,7 @@ mod tests {
                 let gradient = DVec3::new(u(0.618), u(0.414), u(0.732)) * 400.0 * u(0.05).abs();
                 let sample = [0.5, 0.25, 0.125, 0.75];
                 lit.aim(direction, &mut aim);
-                let found = lit.shade(&aim, sample, gradient.as_vec3().to_array());
+                let found = lit.shade(&aim, sample, &SPOT, || gradient.as_vec3().to_array());
                 let (reflected, highlight) = definition.factors(gradient, direction);
                 for c in 0..3 {
                     let expected = f64::from(sample[c]) * reflected[c] + 0.75 * highlight[c];
@@ -167,6 +209,6 @@ mod tests {
         let lit = Lit::new(&definition);
         let mut aim = Vec::new();
         lit.aim(DVec3::X, &mut aim);
-        assert_eq!(lit.shade(&aim, [1.0, 1.0, 1.0, 5.0], [0.0; 3]), [0.15, 0.15, 0.15, 5.0]);
+        assert_eq!(lit.shade(&aim, [1.0, 1.0, 1.0, 5.0], &SPOT, || [0.0; 3]), [0.15, 0.15, 0.15, 5.0]);
     }
 }

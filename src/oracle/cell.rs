@@ -21,6 +21,11 @@ impl<'a> Cell<'a> {
         Cell { volume, corners }
     }
 
+    /// The lattice points at the corners.
+    pub(super) fn corners(&self) -> [[usize; 3]; 8] {
+        self.corners
+    }
+
     /// Values at the corners.
     pub(super) fn values(&self) -> [f64; 8] {
         self.corners.map(|c| self.volume.value(c))
@@ -72,7 +77,8 @@ mod tests {
     #[test]
     fn a_trilinear_field_along_a_path_is_the_cubic() {
         let corners = [3.0, -1.0, 4.0, 1.0, -5.0, 9.0, 2.0, 6.0];
-        let passage = Passage { cell: [0; 3], entry: [0.1, 0.9, 0.0], exit: [0.8, 0.2, 1.0], length_mm: 1.0 };
+        let passage =
+            Passage { cell: [0; 3], entry: [0.1, 0.9, 0.0], exit: [0.8, 0.2, 1.0], length_mm: 1.0, from_mm: 0.0 };
         let cubic = along(&corners, &passage);
         for t in [0.0, 0.2, 0.5, 0.9, 1.0] {
             let x: [f64; 3] = std::array::from_fn(|a| (1.0 - t) * passage.entry[a] + t * passage.exit[a]);

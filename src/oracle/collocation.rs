@@ -10,8 +10,8 @@ use super::quadrature::Gauss;
 
 const NODES: usize = 5;
 
-/// A step and its halves may differ by this much, in light and in optical depth. The halves, which are kept, are then
-/// better by three orders of magnitude.
+/// A smooth step and its halves may differ by this much, in light and in optical depth. The halves, which are kept, are
+/// then better by three orders of magnitude.
 const AGREEMENT: f64 = 1e-14;
 
 /// Deep enough to resolve a passage to the last bit and an extinction of 1e300 per mm.
@@ -34,6 +34,7 @@ pub(super) trait Integrand {
 pub(super) struct Collocation {
     gauss: Gauss<NODES>,
     running: [[f64; NODES]; NODES],
+    agreement: f64,
 }
 
 /// Part of a passage: position and width in units of the passage, and length in mm.
@@ -54,8 +55,13 @@ impl Stretch {
 impl Collocation {
     /// The rule.
     pub(super) fn new() -> Self {
+        Collocation::within(AGREEMENT)
+    }
+
+    /// The rule for integrands that are bent between cuts: a step and its halves may differ by `agreement`.
+    pub(super) fn within(agreement: f64) -> Self {
         let gauss = Gauss::new();
-        Collocation { running: gauss.running(), gauss }
+        Collocation { running: gauss.running(), gauss, agreement }
     }
 
     /// Adds a stretch to the light of a ray.
@@ -80,7 +86,7 @@ impl Collocation {
         // A deep step sees none of what it should: its nodes agree with anything.
         let shallow = joined.optical_depth.max(whole.optical_depth) <= 1.0;
         let resolved = stretch.width <= NARROWEST || integrand.resolved_by(&stretch);
-        let agreed = difference(&whole, &joined, light.transmittance()) <= AGREEMENT;
+        let agreed = difference(&whole, &joined, light.transmittance()) <= self.agreement;
         if shallow && resolved && agreed || halvings_left == 0 {
             light.add(&joined);
         } else {

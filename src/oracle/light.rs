@@ -1,5 +1,7 @@
 //! What a ray has gathered so far: optical depth and colour, both summed without losing small terms.
 
+use crate::scene::Haze;
+
 /// A stretch of a ray: the light that leaves its near end, and its optical depth.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Segment {
@@ -10,6 +12,12 @@ pub struct Segment {
 }
 
 impl Segment {
+    /// A stretch of haze alone.
+    pub(super) fn of_haze(haze: &Haze, length_mm: f64) -> Segment {
+        let (rgb, _) = haze.slab(length_mm);
+        Segment { rgb, optical_depth: haze.extinction_per_mm * length_mm }
+    }
+
     /// `T = e^{-τ}`.
     pub fn transmittance(&self) -> f64 {
         (-self.optical_depth).exp()

@@ -70,12 +70,10 @@ pub(super) fn surfaces(oracle: &Oracle<'_>, surfaces: &[Surface], ray: &Ray) -> 
             let Surface { opacity, color, .. } = surfaces[n];
             let gradients = Cell::new(oracle.volume, passage.cell).gradients_per_mm();
             let g = DVec3::from_array(std::array::from_fn(|a| along(&gradients.map(|g| g[a]), &passage).at(t)));
-            let (reflected, highlight) = match &oracle.scene.shading {
-                Some(shading) => shading.factors(g, ray.direction),
-                None => ([1.0; 3], [0.0; 3]),
-            };
+            let at_mm = passage.from_mm + t * passage.length_mm;
+            let (reflected, added) = oracle.scene.factors(ray, at_mm, g, |_| 1.0);
             for c in 0..3 {
-                rgb[c] += transmittance * opacity * (color[c] * reflected[c] + highlight[c]);
+                rgb[c] += transmittance * opacity * (color[c] * reflected[c] + added[c]);
             }
             transmittance *= 1.0 - opacity;
         }

@@ -15,6 +15,8 @@ pub(super) struct Path {
     step_per_mm: DVec3,
     /// Where the path begins and ends, mm.
     ends_mm: [f64; 2],
+    /// Distance of parameter 0 from the ray's origin, mm.
+    zero_mm: f64,
 }
 
 /// The part of a path in one cell.
@@ -28,6 +30,8 @@ pub(super) struct Passage {
     pub(super) exit: [f64; 3],
     /// Length, mm.
     pub(super) length_mm: f64,
+    /// Distance of the entry from the ray's origin, mm.
+    pub(super) from_mm: f64,
 }
 
 impl Path {
@@ -40,9 +44,38 @@ impl Path {
             multiply_add(center_mm, ray.direction[a], ray.origin_mm[a], -corner[a])
         }));
         let to_index = grid.lps_mm_to_index().matrix3;
-        let (origin, step_per_mm) = (to_index * start, to_index * ray.direction);
+        let path = Path {
+            dims: grid.dims(),
+            origin: to_index * start,
+            step_per_mm: to_index * ray.direction,
+            ends_mm: [from_mm.max(0.0) - center_mm, to_mm - center_mm],
+            zero_mm: center_mm,
+        };
+        path.inside(grid)
+    }
+
+    /// The part between `from_mm` and `to_mm` of the ray from a lattice point in a direction. Its index is exact, so that a
+    /// ray along the border of the domain does not leave it by rounding.
+    pub(super) fn from_voxel(
+        grid: &Grid,
+        voxel: [usize; 3],
+        direction: DVec3,
+        [from_mm, to_mm]: [f64; 2],
+    ) -> Option<Path> {
+        let path = Path {
+            dims: grid.dims(),
+            origin: DVec3::from_array(voxel.map(|i| i as f64)),
+            step_per_mm: grid.lps_mm_to_index().matrix3 * direction,
+            ends_mm: [from_mm.max(0.0), to_mm],
+            zero_mm: 0.0,
+        };
+        path.inside(grid)
+    }
+
+    /// The part inside the domain, or `None` if it is empty or a point.
+    fn inside(self, grid: &Grid) -> Option<Path> {
+        let Path { origin, step_per_mm, ends_mm: [mut first, mut last], .. } = self;
         let (low, high) = grid.index_bounds();
-        let (mut first, mut last) = (from_mm.max(0.0) - center_mm, to_mm - center_mm);
         for a in 0..3 {
             if step_per_mm[a] == 0.0 {
                 // Outside a slab along which the ray runs; inside, 0/0 must not be computed.
@@ -56,7 +89,7 @@ impl Path {
             first = first.max(x.min(y));
             last = last.min(x.max(y));
         }
-        (first < last).then_some(Path { dims: grid.dims(), origin, step_per_mm, ends_mm: [first, last] })
+        (first < last).then_some(Path { ends_mm: [first, last], ..self })
     }
 
     /// The cells in order. Each crossing of a face is computed from the origin, never from the crossing before it.
@@ -80,7 +113,13 @@ impl Path {
     }
 
     fn passage(&self, from_mm: f64, to_mm: f64) -> Passage {
-        let mut passage = Passage { cell: [0; 3], entry: [0.0; 3], exit: [0.0; 3], length_mm: to_mm - from_mm };
+        let mut passage = Passage {
+            cell: [0; 3],
+            entry: [0.0; 3],
+            exit: [0.0; 3],
+            length_mm: to_mm - from_mm,
+            from_mm: from_mm + self.zero_mm,
+        };
         let middle = 0.5 * (from_mm + to_mm);
         for a in 0..3 {
             if self.dims[a] == 1 {
@@ -214,6 +253,23 @@ mod tests {
         let far = Path::new(&grid, &Ray { origin_mm, direction }, 0.0, 1e9).unwrap();
         let drift = (far.origin - near.origin).cross(near.step_per_mm).length();
         assert!(drift < 2e-10, "the rays lie {drift:e} apart; rounding of the origin alone allows 1.2e-10");
+    }
+
+    #[test]
+    fn distances_are_counted_from_the_rays_origin() {
+        let far = path([3, 3, 3], [-7.0, 1.2, 1.3], [1.0, 0.0, 0.0]).unwrap();
+        assert_eq!(far.passages().map(|p| p.from_mm).collect::<Vec<_>>(), [7.0, 8.0]);
+    }
+
+    #[test]
+    fn a_ray_from_a_border_voxel_along_the_border_stays_inside() {
+        // 9.1 mm over 0.7 mm is more than 13 in floating point.
+        let grid = Grid::axis_aligned([14, 14, 3], DVec3::splat(0.7)).unwrap();
+        let everywhere = [0.0, f64::INFINITY];
+        let along = Path::from_voxel(&grid, [13, 2, 1], DVec3::Y, everywhere).unwrap();
+        let passages: Vec<Passage> = along.passages().collect();
+        assert_eq!((passages.len(), passages[0].from_mm), (11, 0.0));
+        assert!(Path::from_voxel(&grid, [13, 2, 1], DVec3::X, everywhere).is_none(), "outwards there is nothing");
     }
 
     #[test]

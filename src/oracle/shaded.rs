@@ -1,27 +1,24 @@
-//! Shading along a ray: its factors at a point, and where along a passage they are not smooth.
+//! Where shading along a passage is not smooth.
 
 use glam::DVec3;
 
 use super::bernstein::{Bernstein, Cubic};
-use super::patches::Channels;
 use super::roots::{critical_points, zeros};
 use super::splits::Splits;
 use crate::scene::Shading;
 
 /// Shading on rays of one direction.
 #[derive(Debug, Clone)]
-pub(super) struct ShadedRay<'a> {
-    shading: &'a Shading,
-    direction: DVec3,
+pub(super) struct ShadedRay {
     /// Cosine of the angle by which the normal may turn within a step of the quadrature.
     smallest_cosine: f64,
     /// The vectors whose product with the normal is bent at zero: towards each light, and halfway from it to the eye.
     bends: Vec<DVec3>,
 }
 
-impl<'a> ShadedRay<'a> {
+impl ShadedRay {
     /// Shading on rays of this direction.
-    pub(super) fn new(shading: &'a Shading, direction: DVec3) -> Self {
+    pub(super) fn new(shading: &Shading, direction: DVec3) -> Self {
         let mut bends = Vec::new();
         for (towards, half, _) in shading.directions(direction) {
             bends.push(towards);
@@ -31,7 +28,7 @@ impl<'a> ShadedRay<'a> {
         }
         // A highlight falls to a seventh of its top at 2/√shininess, too wide to lie unseen between five nodes.
         let widest_turn = (2.0 / shading.shininess.sqrt()).min(1.0);
-        ShadedRay { shading, direction, smallest_cosine: widest_turn.cos(), bends }
+        ShadedRay { smallest_cosine: widest_turn.cos(), bends }
     }
 
     /// Adds the cuts where shading is bent, and those where the gradient is small and its direction turns quickly.
@@ -54,12 +51,5 @@ impl<'a> ShadedRay<'a> {
     pub(super) fn is_gentle_between(&self, a: DVec3, b: DVec3) -> bool {
         let (aa, bb) = (a.length_squared(), b.length_squared());
         aa.max(bb) <= 4.0 * aa.min(bb) && a.dot(b) >= self.smallest_cosine * (aa * bb).sqrt()
-    }
-
-    /// Extinction and shaded emission from σ and q at a point with this gradient.
-    pub(super) fn shade(&self, [extinction, emission @ ..]: Channels, gradient_per_mm: DVec3) -> Channels {
-        let (reflected, highlight) = self.shading.factors(gradient_per_mm, self.direction);
-        let [r, g, b] = std::array::from_fn(|c| emission[c] * reflected[c] + extinction * highlight[c]);
-        [extinction, r, g, b]
     }
 }

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::scene::{Background, Camera, Clip, HalfSpace, Light, Model, Projection, Shading};
 
-use super::Plan;
+use super::{Plan, effects};
 
 /// The plan in words: what is computed in order with its memory, from where, what is not computed and why, warnings.
 pub fn explain(plan: &Plan) -> String {
@@ -23,6 +23,10 @@ pub fn explain(plan: &Plan) -> String {
     }
     if !matches!(plan.scene.model, Model::Value(_)) {
         line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    }
+    let effects = effects::in_words(&plan.scene.effects);
+    if !effects.is_empty() {
+        line(&mut text, "effects", &effects.join(", "));
     }
     if let Some(clip) = describe_clip(&plan.scene.effects.clip) {
         line(&mut text, "clip", &clip);
@@ -153,6 +157,7 @@ pub fn explain_json(plan: &Plan) -> Value {
         },
         "shading": plan.scene.shading.as_ref().map(shading_json),
         "clip": plan.scene.effects.clip.half_spaces.iter().map(half_space_json).collect::<Vec<_>>(),
+        "effects": effects::effects_json(&plan.scene.effects),
         "background": match plan.scene.background {
             Background::Transparent => json!("transparent"),
             Background::Color(rgb) => json!(rgb),

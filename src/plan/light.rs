@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::effects;
 use crate::scene::{Background, Light, Shading};
 use crate::spec::{BackgroundSpec, Color, LightSpec, ShadingSpec, Spec, TransportName};
 
@@ -45,9 +46,10 @@ pub(super) fn resolve(spec: &Spec) -> ResolvedLight {
         BackgroundSpec::Color(Color(rgb)) => Background::Color(rgb),
     };
     match written {
-        // Without light, shading is a constant factor, and no gradient need be computed for it.
-        Some(Shading { diffuse, specular, ambient, .. }) if diffuse == 0.0 && specular == 0.0 => {
-            let scales = Scales { emission: ambient * scales.emission, ..scales };
+        // Without light, shading is a constant factor, and no gradient need be computed for it. What scatters is not
+        // scaled by it.
+        Some(shading) if !shading.is_lit() && !effects::scatters(spec) => {
+            let scales = Scales { emission: shading.ambient * scales.emission, ..scales };
             ResolvedLight { shading: None, scales, background }
         }
         shading => ResolvedLight { shading, scales, background },
@@ -67,7 +69,7 @@ fn shading(spec: &ShadingSpec) -> Shading {
     }
 }
 
-fn light(spec: &LightSpec) -> Light {
+pub(super) fn light(spec: &LightSpec) -> Light {
     let rgb = |color: &Option<Color>| color.unwrap_or(Color::WHITE).0;
     match spec {
         LightSpec::Headlight { color } => Light::Headlight { color: rgb(color) },

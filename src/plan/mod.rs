@@ -18,6 +18,7 @@ mod stages;
 mod volume_info;
 mod warnings;
 
+use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
 pub use layers::Layer;
 pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
@@ -29,7 +30,7 @@ use std::path::Path;
 
 use crate::demand::Demand;
 use crate::error::Result;
-use crate::scene::Scene;
+use crate::scene::{Scene, Shading};
 use crate::spec::Spec;
 use crate::transfer::TransferFunction;
 
@@ -71,19 +72,28 @@ impl Plan {
         let light = light::resolve(spec);
         let layers = layers::resolve(spec, volume, gradient_range[1], light.scales)?;
         let terms = layers.iter().flat_map(|layer| layer.terms.iter().cloned()).collect();
+        let camera = camera::resolve(spec, &volume.grid)?;
+        let surroundings = Surroundings {
+            grid: &volume.grid,
+            camera: &camera,
+            shading: light.shading.as_ref(),
+            background: light.background,
+        };
+        let Resolved { effects, omitted, warnings } = effects::resolve(spec, &surroundings)?;
         let scene = Scene {
             model: model::resolve(spec),
             transfer_function: TransferFunction::new(window, gradient_range[1], terms)?,
             shading: light.shading,
-            camera: camera::resolve(spec, &volume.grid)?,
+            camera,
             background: light.background,
-            effects: effects::resolve(spec, &volume.grid),
+            effects,
         };
         let method = integrator::resolve(spec, &volume.grid);
         let demand = Demand {
-            gradient: scene.shading.is_some(),
+            gradient: scene.shading.as_ref().is_some_and(Shading::is_lit),
             gradient_magnitude: scene.transfer_function.reads_gradient(),
             macrocells: matches!(method, Method::March(_)) && model::skips_blocks(&scene.model),
+            visibility: !scene.occluded_directions().is_empty(),
         };
         let mut plan = Plan {
             scene,
@@ -99,7 +109,9 @@ impl Plan {
         };
         plan.stages = stages::computed(&plan, volume);
         plan.not_computed = stages::not_computed(&plan, spec);
+        plan.not_computed.extend(omitted);
         plan.warnings = warnings::of(&plan, spec, volume);
+        plan.warnings.extend(warnings);
         Ok(plan)
     }
 

@@ -11,7 +11,8 @@ use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order,
 /// One stage of the computation.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Stage {
-    /// The module that does it: `volume`, `field`, `classify`, `integrate`, `image`, `oracle`.
+    /// The module that does it: `volume`, `field`, `classify`, `integrate`, `image`, `oracle`; `light` is a part of
+    /// `integrate`.
     pub name: &'static str,
     /// What it does, with the kernel it uses.
     pub what: String,
@@ -50,6 +51,12 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     }
     if reads_transfer_function(&plan.scene) {
         stages.push(classify(plan));
+    }
+    if plan.demand.visibility {
+        let lights = plan.scene.occluded_directions().len() as u64;
+        let towards = if lights == 1 { "1 light".to_owned() } else { format!("{lights} lights") };
+        let what = format!("transmittance towards {towards} at the voxels that rays reach, f32");
+        stages.push(Stage { name: "light", what, bytes: 4 * lights * voxels });
     }
     let pixels: u64 = plan.scene.camera.size().iter().map(|&n| n as u64).product();
     stages.push(Stage {
@@ -123,7 +130,11 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
         Model::Value(model) => return format!("{method}/{storage}/{}/{real}", model.of.name()),
         Model::Surfaces(_) => return format!("{method}/{storage}/surfaces/{real}"),
     }
-    let shader = if scene.shading.is_some() { "lit" } else { "unlit" };
+    let shader = match &scene.shading {
+        _ if scene.effects.change_light() => "atmosphere",
+        Some(_) => "lit",
+        None => "unlit",
+    };
     format!("{method}/{storage}/{classifier}/{shader}")
 }
 

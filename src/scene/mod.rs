@@ -8,6 +8,7 @@
 
 mod camera;
 mod effects;
+mod lighting;
 mod model;
 mod shading;
 

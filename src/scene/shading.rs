@@ -31,7 +31,7 @@ pub enum Light {
 ///
 /// `S` is 0 where a one-sided `n·l` is not above 0. `w` fades the lit terms out where the gradient vanishes and its
 /// direction means nothing; `g₀ = 0` switches the fade off, and then a gradient of exactly 0 leaves the ambient term
-/// alone. The light is not attenuated on its way to the point.
+/// alone. The light is not attenuated on its way to the point, unless [`Shadows`](super::Shadows) say so.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shading {
     /// Share of the colour seen without any light.
@@ -65,6 +65,11 @@ impl Shading {
         })
     }
 
+    /// Whether anything is lit; if not, no gradient is read and the emission is only scaled.
+    pub fn is_lit(&self) -> bool {
+        self.diffuse != 0.0 || self.specular != 0.0
+    }
+
     /// The largest values that the two factors of the definition can take in any channel: of the emission, and of the
     /// extinction.
     pub fn largest_factors(&self) -> (f64, f64) {
@@ -79,6 +84,16 @@ impl Shading {
     /// The factors of the definition at a gradient `g` (HU/mm) on a ray of this direction:
     /// `(ambient + diffuse · Σ color · D, specular · Σ color · S)`, each linear RGB.
     pub fn factors(&self, gradient_per_mm: DVec3, ray_direction: DVec3) -> ([f64; 3], [f64; 3]) {
+        self.factors_dimmed(gradient_per_mm, ray_direction, |_| 1.0)
+    }
+
+    /// The same with the terms of each light, given by its index, multiplied by a share of its own.
+    pub fn factors_dimmed(
+        &self,
+        gradient_per_mm: DVec3,
+        ray_direction: DVec3,
+        share: impl Fn(usize) -> f64,
+    ) -> ([f64; 3], [f64; 3]) {
         let mut reflected = [self.ambient; 3];
         let mut highlight = [0.0; 3];
         let square = gradient_per_mm.length_squared();
@@ -87,7 +102,8 @@ impl Shading {
         }
         let fade = square / (square + self.soft_gradient_per_mm * self.soft_gradient_per_mm);
         let normal = -gradient_per_mm / square.sqrt();
-        for (towards, half, color) in self.directions(ray_direction) {
+        for (light, (towards, half, color)) in self.directions(ray_direction).enumerate() {
+            let fade = fade * share(light);
             let facing = normal.dot(towards);
             let lit = if self.two_sided { facing.abs() } else { facing.max(0.0) };
             let shine = normal.dot(half);

@@ -31,8 +31,9 @@ pub use analytic::{AnalyticSpec, FieldSpec, MarschnerLobbSpec, RampSpec, SphereS
 pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
 pub use effects::{
-    ClipBoxSpec, ClipPlaneSpec, ClipSpec, EffectsSpec, LightSpec, ProjectSpec, ProjectionOf, RangeSpec, ShadingSpec,
-    SurfaceSpec, TransportName, TrimSpec,
+    ClipBoxSpec, ClipPlaneSpec, ClipSpec, DepthCueSpec, EffectsSpec, ExpFogSpec, FogSpec, HazeSpec, LightSpec,
+    LinearFogSpec, ProjectSpec, ProjectionOf, RangeSpec, ScatteringSpec, ShadingSpec, ShadowsSpec, SurfaceSpec,
+    TransportName, TrimSpec,
 };
 pub use integrate::{
     ColorsName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName,

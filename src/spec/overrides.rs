@@ -4,10 +4,11 @@ use super::tree::{self, Key, Node, Origin, Value};
 use crate::error::{Error, Fault, Result};
 
 /// Keys that exclude each other, by their paths: a scan is one or the other, and so is a method.
-const ALTERNATIVES: [&[&str]; 3] = [
+const ALTERNATIVES: [&[&str]; 4] = [
     &["volume.source", "volume.phantom", "volume.analytic"],
     &["integrate.exact", "integrate.march", "integrate.reference"],
     &["integrate.march.step_mm", "integrate.march.step_voxels"],
+    &["effects.fog.linear", "effects.fog.exp", "effects.fog.exp2"],
 ];
 
 /// Applies the override of this index: `path=value`, with the value in YAML, and `null` to remove a key. What the file

@@ -3,6 +3,8 @@
 //! All crossings are computed from the ray's entry into the volume, in f64, and never accumulated, so that no error grows
 //! along the ray; inside a cell coordinates are in `[0, 1]`, and f32 is enough.
 
+use glam::DVec3;
+
 use super::super::chord::Chord;
 use crate::scene::{Clip, Ray};
 use crate::volume::Grid;
@@ -35,6 +37,11 @@ impl IndexRay {
         let (low, high) = grid.index_bounds();
         chord.entry_index = chord.entry_index.clamp(low, high);
         Some(IndexRay { chord })
+    }
+
+    /// The part inside the domain of a ray from a lattice point.
+    pub(super) fn from_voxel(grid: &Grid, voxel: [usize; 3], direction: DVec3) -> Option<Self> {
+        Chord::from_voxel(grid, voxel, direction).map(|chord| IndexRay { chord })
     }
 
     /// Where it enters, mm from its origin.
@@ -147,7 +154,6 @@ impl Iterator for Segments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     fn walk(origin: DVec3, direction: DVec3, dims: [usize; 3]) -> Vec<Segment> {
         let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();

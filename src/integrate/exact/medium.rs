@@ -84,11 +84,7 @@ impl<R: Real, V: Voxel> Medium<R> for Classified<'_, V, OneD<R>> {
         let Linear { low, slope } = self.classifier.piece(i);
         let channel = |c: usize| dv.map(|d| slope[c].mul_plus(d, low[c]));
         let optics = Optics { emission: [channel(0), channel(1), channel(2)], extinction: channel(3) };
-        Some(if S::LIT {
-            optics.integrate_shaded::<5>(length_mm, &shader.factors(shading, from, to), shader.largest_color())
-        } else {
-            optics.integrate(length_mm)
-        })
+        Some(shader.integrate::<4, 5>(&optics, length_mm, shading, [from, to]))
     }
 }
 
@@ -150,11 +146,7 @@ impl<R: Real, V: Voxel> Medium<R> for Classified<'_, V, TwoD<R>> {
             each(|k| by_both[c].mul_plus(vg[k], by_gradient[c].mul_plus(g[k], by_value[c].mul_plus(v[k], low[c]))))
         };
         let optics = Optics { emission: [channel(0), channel(1), channel(2)], extinction: channel(3) };
-        Some(if S::LIT {
-            optics.integrate_shaded::<8>(length_mm, &shader.factors(shading, from, to), shader.largest_color())
-        } else {
-            optics.integrate(length_mm)
-        })
+        Some(shader.integrate::<7, 8>(&optics, length_mm, shading, [from, to]))
     }
 }
 

@@ -3,8 +3,10 @@
 //! In a cell the value along a ray is an exact cubic, and so is the gradient magnitude. The segment is cut where a cubic
 //! crosses a knot of the transfer function (`splits`); between cuts extinction and emission are polynomials
 //! (`medium`), optical depth is exact, and the emitted light has a proven error (`piece`). Pieces are halved until the
-//! ray keeps within its `budget`. This scalar kernel, in f64, is the twin of every faster one.
+//! ray keeps within its `budget`. This scalar kernel, in f64, is the twin of every faster one. Scenes with effects of light
+//! (`atmosphere`) are integrated in f64 alone.
 
+mod atmosphere;
 mod budget;
 mod cells;
 mod depth;
@@ -16,6 +18,7 @@ mod piece;
 mod ray;
 mod shade;
 mod splits;
+mod toward_light;
 mod values;
 
 use crate::classify::{Baked, bake};
@@ -26,6 +29,7 @@ use crate::plan::Exact;
 use crate::scene::{Model, Ray, Scene, Shading, ValueModel};
 use crate::volume::{Samples, Volume};
 
+use super::light_volumes::LightVolumes;
 use super::tiles::{self, Radiance};
 use super::{Rendered, Statistics};
 use lattice::Lattice;
@@ -35,6 +39,7 @@ use shade::{Lit, Unlit};
 use splits::Splits;
 
 pub use ray::Traced;
+pub(super) use toward_light::{TowardLight, toward_light};
 
 /// Renders within a tolerance.
 ///
@@ -118,13 +123,26 @@ fn for_samples<'a, V: Voxel>(
             return Box::new(Direct { trace, name: format!("exact/{}/{}/f64", V::NAME, model.of.name()) });
         }
         Model::Surfaces(surfaces) => {
-            let (grid, rescale, shading) = (volume.grid(), volume.rescale(), scene.shading.as_ref());
-            let trace =
-                move |ray: &Ray| Some(models::show_surfaces(&lattice, grid, clip, rescale, surfaces, shading, ray));
+            let (grid, rescale) = (volume.grid(), volume.rescale());
+            let trace = move |ray: &Ray| Some(models::show_surfaces(&lattice, grid, rescale, surfaces, scene, ray));
             return Box::new(Direct { trace, name: format!("exact/{}/surfaces/f64", V::NAME) });
         }
     }
     let double = bake::<f64>(tf, rescale);
+    if scene.effects.change_light() {
+        let name = |classifier: &str| format!("exact/{}/{classifier}/atmosphere/f64", V::NAME);
+        let lights = LightVolumes::new(volume, scene);
+        return match double {
+            Baked::OneD(classifier) => {
+                let medium = classified(lattice, classifier);
+                Box::new(atmosphere::Kernel { frame, scene, medium, lights, name: name("tf1d") })
+            }
+            Baked::TwoD(classifier) => {
+                let medium = classified(lattice, classifier);
+                Box::new(atmosphere::Kernel { frame, scene, medium, lights, name: name("tf2d") })
+            }
+        };
+    }
     // Across an interval this narrow, the rounding of a value in f32 would cost more than rounding may.
     let too_narrow = double.narrowest() < SHARE_OF_ROUNDING * f64::from(f32::EPSILON) / tolerance;
     let precision = if too_narrow { Precision::Double } else { precision };

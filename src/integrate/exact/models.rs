@@ -1,7 +1,7 @@
 //! Pictures that are not of light: one number of what lies along a ray, or level surfaces. In f64, exact up to rounding.
 
 use crate::field::Voxel;
-use crate::scene::{Clip, Ray, Shading, Surface, ValueModel, ValueOf};
+use crate::scene::{Clip, Ray, Scene, Surface, ValueModel, ValueOf};
 use crate::volume::{Grid, Rescale};
 
 use super::Traced;
@@ -68,23 +68,20 @@ fn shown(model: &ValueModel, number: f64) -> Traced {
 pub(super) fn show_surfaces<V: Voxel>(
     lattice: &Lattice<'_, V>,
     grid: &Grid,
-    clip: &Clip,
     rescale: Rescale,
     surfaces: &[Surface],
-    shading: Option<&Shading>,
+    scene: &Scene,
     ray: &Ray,
 ) -> Traced {
     let levels: Vec<f64> = surfaces.iter().map(|s| rescale.stored(s.value)).collect();
     let mut traced = Traced { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, bound: ROUNDING, pieces: 0 };
-    let segments = IndexRay::new(ray, grid, clip).into_iter().flat_map(|inside| inside.segments(grid));
+    let segments = IndexRay::new(ray, grid, &scene.effects.clip).into_iter().flat_map(|inside| inside.segments(grid));
     crossings(lattice, segments, rescale.slope.signum(), &levels, |crossing| {
         let Surface { opacity, color, .. } = surfaces[crossing.level];
-        let (reflected, highlight) = match shading {
-            Some(shading) => shading.factors(crossing.gradient_per_mm.into(), ray.direction),
-            None => ([1.0; 3], [0.0; 3]),
-        };
+        // Between surfaces nothing absorbs, so that they cast no shadows.
+        let (reflected, added) = scene.factors(ray, crossing.at_mm, crossing.gradient_per_mm.into(), |_| 1.0);
         for c in 0..3 {
-            traced.radiance[c] += traced.transmittance * opacity * (color[c] * reflected[c] + highlight[c]);
+            traced.radiance[c] += traced.transmittance * opacity * (color[c] * reflected[c] + added[c]);
         }
         traced.opacity += traced.transmittance * opacity;
         traced.transmittance -= traced.transmittance * opacity;

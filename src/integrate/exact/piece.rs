@@ -103,7 +103,35 @@ impl<R: Real, const N: usize> Optics<R, N> {
         factors: &LinearFactors<R>,
         largest_color: R,
     ) -> Integral<R> {
-        let mut integral = self.shaded::<M>(factors).integrate(length_mm);
+        self.with_factor_errors(self.shaded::<M>(factors).integrate(length_mm), length_mm, factors, largest_color)
+    }
+
+    /// The same in a homogeneous medium that adds emission and extinction of its own, unshaded.
+    pub(super) fn integrate_in_medium<const M: usize>(
+        &self,
+        length_mm: R,
+        factors: &LinearFactors<R>,
+        largest_color: R,
+        emission: [R; 3],
+        extinction: R,
+    ) -> Integral<R> {
+        let mut optics = self.shaded::<M>(factors);
+        for (q, more) in optics.emission.iter_mut().zip(emission) {
+            *q = q.map(|q| q + more);
+        }
+        optics.extinction = optics.extinction.map(|s| s + extinction);
+        self.with_factor_errors(optics.integrate(length_mm), length_mm, factors, largest_color)
+    }
+
+    /// An integral with what the errors of factors may have added to it.
+    #[inline(always)]
+    fn with_factor_errors(
+        &self,
+        mut integral: Integral<R>,
+        length_mm: R,
+        factors: &LinearFactors<R>,
+        largest_color: R,
+    ) -> Integral<R> {
         // ∫q e^{−τ} is at most ∫q, and at most the largest colour times A.
         let n = R::from_f64(N as f64);
         let emitted = self.emission.iter().fold(R::ZERO, |most, q| most.max(length_mm * sum(q) / n));

@@ -46,6 +46,8 @@ pub(super) struct Frame<'a> {
 pub(super) struct Brightest {
     /// Of emission over extinction before shading; infinite if something emits without absorbing.
     pub(super) color: f64,
+    /// Of emission before shading, 1/mm.
+    pub(super) emission_per_mm: f64,
     /// Of shaded emission over extinction; infinite if something emits without absorbing.
     pub(super) per_absorbed: f64,
     /// Of shaded emission, 1/mm.
@@ -75,13 +77,43 @@ impl Brightest {
             }
         }
         let (reflected, highlight) = scene.shading.as_ref().map_or((1.0, 0.0), |s| s.largest_factors());
-        // A product of ∞ and 0 would be NaN.
-        let per_absorbed = if reflected > 0.0 { color * reflected } else { 0.0 };
-        Brightest {
+        let unshaded = Brightest {
             color,
-            per_absorbed: per_absorbed + highlight,
-            per_mm: emission * reflected + extinction * highlight,
+            emission_per_mm: emission,
+            per_absorbed: color,
+            per_mm: emission,
             extinction_per_mm: extinction,
+        };
+        unshaded.shaded(reflected, highlight)
+    }
+
+    /// The same where shading multiplies emission and extinction by factors up to these.
+    pub(super) fn shaded(self, reflected: f64, highlight: f64) -> Self {
+        // A product of ∞ and 0 would be NaN.
+        let per_absorbed = if reflected > 0.0 { self.color * reflected } else { 0.0 };
+        Brightest {
+            per_absorbed: per_absorbed + highlight,
+            per_mm: self.emission_per_mm * reflected + self.extinction_per_mm * highlight,
+            ..self
+        }
+    }
+
+    /// The same where some of it may look like fog of this colour instead.
+    pub(super) fn fogged(self, color: f64) -> Self {
+        Brightest {
+            per_absorbed: self.per_absorbed.max(color),
+            per_mm: self.per_mm.max(self.extinction_per_mm * color),
+            ..self
+        }
+    }
+
+    /// The same in a medium that adds this extinction, in a colour up to this.
+    pub(super) fn in_haze(self, extinction_per_mm: f64, color: f64) -> Self {
+        Brightest {
+            per_absorbed: self.per_absorbed.max(color),
+            per_mm: self.per_mm + extinction_per_mm * color,
+            extinction_per_mm: self.extinction_per_mm + extinction_per_mm,
+            ..self
         }
     }
 
@@ -100,19 +132,20 @@ impl Frame<'_> {
         shader: &S,
         splits: &mut Splits<R>,
     ) -> Option<Traced> {
-        let inside = IndexRay::new(ray, self.grid, self.clip)?;
-        let mut light = Front {
-            radiance: [0.0; 3],
-            transmittance: 1.0,
-            opacity: 0.0,
-            budget: Budget::new(self.tolerance),
-            pieces: 0,
+        let mut light = Front::new(Budget::new(self.tolerance));
+        let space = |length_mm: f64| shader.space(R::from_f64(length_mm));
+        let Some(inside) = IndexRay::new(ray, self.grid, self.clip) else {
+            light.cross(space(shader.space_end_mm()?));
+            return Some(light.ended(0.0));
         };
+        let end_mm = shader.space_end_mm().unwrap_or(inside.exit_mm());
+        light.cross(space(inside.enter_mm()));
         for segment in inside.segments(self.grid) {
             let Some(fields) = medium.fields(&segment) else {
+                light.cross(space(segment.length_mm));
                 continue;
             };
-            let shading = shader.cell(|| medium.gradient(&fields, &segment));
+            let shading = shader.cell(&segment, || medium.gradient(&fields, &segment));
             let harm = self.brightest.per_mm.max(self.brightest.extinction_per_mm) * segment.length_mm;
             splits.restart(R::from_f64(harm / (OF_A_CUT * self.tolerance)));
             medium.cut(&fields, splits);
@@ -123,16 +156,18 @@ impl Frame<'_> {
                 let ends = [splits.get(i - 1), splits.get(i)];
                 light.pass(ends, |part| {
                     let length_mm = R::from_f64(segment.length_mm) * (part[1] - part[0]);
-                    let integral = medium.integrate(&fields, part, length_mm, shader, &shading)?;
+                    let integral = medium.integrate(&fields, part, length_mm, shader, &shading);
+                    let integral = integral.or_else(|| shader.space(length_mm))?;
                     let at_mm = front_mm + part[1].to_f64() * segment.length_mm;
                     Some((integral, (at_mm - inside.enter_mm()) / inside.length_mm()))
                 });
             }
-            let rest = self.brightest.of_rest(light.transmittance, inside.exit_mm() - segment.exit_mm);
+            let rest = self.brightest.of_rest(light.transmittance, end_mm - segment.exit_mm);
             if light.budget.may_end(rest) {
                 return Some(light.ended(rest));
             }
         }
+        light.cross(space(end_mm - inside.exit_mm()));
         Some(light.ended(0.0))
     }
 }
@@ -147,6 +182,24 @@ struct Front {
 }
 
 impl Front {
+    #[inline(always)]
+    fn new(budget: Budget) -> Self {
+        Front { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, budget, pieces: 0 }
+    }
+
+    /// Passes a stretch whose integral has a closed form.
+    #[inline(always)]
+    fn cross<R: Real>(&mut self, stretch: Option<super::piece::Integral<R>>) {
+        let Some(integral) = stretch else { return };
+        let t = self.transmittance;
+        for (sum, &x) in self.radiance.iter_mut().zip(&integral.radiance) {
+            *sum += t * x.to_f64();
+        }
+        self.opacity += t * integral.absorbed.to_f64();
+        self.transmittance = t - t * integral.absorbed.to_f64();
+        self.budget.spend(t * integral.error.to_f64());
+    }
+
     /// Passes the part of a segment between two cuts, in as few pieces as the budget allows. `integrate` gives the integral
     /// over a piece and the fraction of the ray that its end leaves behind, or `None` if nothing happens on it.
     #[inline(always)]

@@ -19,24 +19,39 @@ use crate::math::bernstein::{Cubic, restrict, value};
 use crate::math::{Real, each};
 use crate::scene::Shading;
 
-use super::piece::LinearFactors;
+use super::cells::Segment;
+use super::piece::{Integral, LinearFactors, Optics};
 use super::splits::Splits;
 
-/// How emission is shaded; chosen by type.
+/// How emission is shaded, and what else there is along a ray; chosen by type.
 pub(super) trait Shader<R: Real> {
-    /// Whether there is anything to do.
-    const LIT: bool;
     /// What it keeps of a segment.
     type Cell;
 
     /// Prepares a segment; `gradient` gives the gradient along it, HU/mm.
-    fn cell(&self, gradient: impl FnOnce() -> [Cubic<R>; 3]) -> Self::Cell;
+    fn cell(&self, segment: &Segment, gradient: impl FnOnce() -> [Cubic<R>; 3]) -> Self::Cell;
     /// Cuts the segment at kinks.
     fn cut(&self, cell: &Self::Cell, splits: &mut Splits<R>);
-    /// Factors over the part `[from, to]` of the segment, which lies between cuts.
-    fn factors(&self, cell: &Self::Cell, from: R, to: R) -> LinearFactors<R>;
-    /// Bound on `q/σ` of what is shaded.
-    fn largest_color(&self) -> R;
+    /// The integral over the part `[from, to]` of the segment, of this length, which lies between cuts; `M` must be `N + 1`.
+    fn integrate<const N: usize, const M: usize>(
+        &self,
+        optics: &Optics<R, N>,
+        length_mm: R,
+        cell: &Self::Cell,
+        part: [R; 2],
+    ) -> Integral<R>;
+
+    /// What a stretch does to light on which the transfer function shows nothing; `None` for nothing.
+    #[inline(always)]
+    fn space(&self, _length_mm: R) -> Option<Integral<R>> {
+        None
+    }
+
+    /// Distance from a ray's origin up to which such stretches do something; `None` if they do nothing anywhere.
+    #[inline(always)]
+    fn space_end_mm(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// Emission as it is.
@@ -44,21 +59,21 @@ pub(super) trait Shader<R: Real> {
 pub(super) struct Unlit;
 
 impl<R: Real> Shader<R> for Unlit {
-    const LIT: bool = false;
     type Cell = ();
 
     #[inline(always)]
-    fn cell(&self, _: impl FnOnce() -> [Cubic<R>; 3]) {}
+    fn cell(&self, _: &Segment, _: impl FnOnce() -> [Cubic<R>; 3]) {}
     #[inline(always)]
     fn cut(&self, (): &(), _: &mut Splits<R>) {}
     #[inline(always)]
-    fn factors(&self, (): &(), _: R, _: R) -> LinearFactors<R> {
-        let (one, none) = ([[R::ONE; 3]; 2], [[R::ZERO; 3]; 2]);
-        LinearFactors { reflected: one, highlight: none, reflected_error: R::ZERO, highlight_error: R::ZERO }
-    }
-    #[inline(always)]
-    fn largest_color(&self) -> R {
-        R::ONE
+    fn integrate<const N: usize, const M: usize>(
+        &self,
+        optics: &Optics<R, N>,
+        length_mm: R,
+        (): &(),
+        _: [R; 2],
+    ) -> Integral<R> {
+        optics.integrate(length_mm)
     }
 }
 
@@ -133,24 +148,67 @@ fn along_light<R: Real>(g: &[Cubic<R>; 3], l: &[R; 3]) -> Cubic<R> {
     each(|k| g[0][k] * l[0] + g[1][k] * l[1] + g[2][k] * l[2])
 }
 
-impl<R: Real> Shader<R> for Lit<R> {
-    const LIT: bool = true;
-    type Cell = [Cubic<R>; 3];
+/// How much of a light reaches the eye along a piece: the diffuse and the specular term without their strengths and the
+/// light's colour, at the front and the back, and their largest distances from the lines between.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LightTerms<R> {
+    pub(super) lambert: [R; 2],
+    pub(super) gloss: [R; 2],
+    pub(super) lambert_error: R,
+    pub(super) gloss_error: R,
+}
 
+impl<R: Real> Lit<R> {
+    /// The terms of a light over a piece along which this is the gradient, and how it varies.
     #[inline(always)]
-    fn cell(&self, gradient: impl FnOnce() -> [Cubic<R>; 3]) -> [Cubic<R>; 3] {
-        gradient()
+    fn terms(&self, light: &RayLight<R>, g: &[Cubic<R>; 3], bounds: &Variation<R>) -> LightTerms<R> {
+        let at = |k: usize| [g[0][k], g[1][k], g[2][k]];
+        // The normal is against the gradient.
+        let facing = value(&along_light(g, &light.towards), R::from_f64(0.5)) < R::ZERO;
+        let [front, back] = [self.light(light, &at(0), facing), self.light(light, &at(3), facing)];
+        let mut terms = LightTerms {
+            lambert: [front[0], back[0]],
+            gloss: [front[1], back[1]],
+            lambert_error: R::ZERO,
+            gloss_error: R::ZERO,
+        };
+        if facing || self.two_sided {
+            let cosines = |v: &[R; 3]| [0, 3].map(|k| bounds.cosine(&at(k), v, self.two_sided));
+            terms.lambert_error = bounds.of_power(cosines(&light.towards), R::ONE);
+            if self.specular > R::ZERO {
+                terms.gloss_error = bounds.of_power(cosines(&light.half), self.shininess);
+            }
+        }
+        terms
     }
 
-    fn cut(&self, g: &[Cubic<R>; 3], splits: &mut Splits<R>) {
+    /// The diffuse and the specular term of each light over the part `[from, to]` of a segment: enclosed between lines,
+    /// with the strengths by which they count in each channel.
+    pub(super) fn each_light(
+        &self,
+        g: &[Cubic<R>; 3],
+        [from, to]: [R; 2],
+        mut see: impl FnMut(usize, &LightTerms<R>, [R; 3], [R; 3]),
+    ) {
+        let g: [Cubic<R>; 3] = each(|a| restrict(&g[a], from, to));
+        let bounds = Variation::of(&g, self.soft_square);
+        for (index, light) in self.lights.iter().enumerate() {
+            let strength = |x: R| each(|c| x * light.color[c]);
+            see(index, &self.terms(light, &g, &bounds), strength(self.diffuse), strength(self.specular));
+        }
+    }
+
+    /// Cuts a segment where a light passes from one side of the surface to the other.
+    pub(super) fn cut(&self, g: &[Cubic<R>; 3], splits: &mut Splits<R>) {
         for light in &self.lights {
             splits.cut_at(&along_light(g, &light.towards), &[R::ZERO]);
         }
     }
 
+    /// Factors over the part `[from, to]` of a segment, which lies between cuts.
+    #[inline(always)]
     fn factors(&self, g: &[Cubic<R>; 3], from: R, to: R) -> LinearFactors<R> {
         let g: [Cubic<R>; 3] = each(|a| restrict(&g[a], from, to));
-        let at = |k: usize| [g[0][k], g[1][k], g[2][k]];
         let bounds = Variation::of(&g, self.soft_square);
         let mut result = LinearFactors {
             reflected: [[self.ambient; 3]; 2],
@@ -159,31 +217,43 @@ impl<R: Real> Shader<R> for Lit<R> {
             highlight_error: R::ZERO,
         };
         for light in &self.lights {
-            // The normal is against the gradient.
-            let facing = value(&along_light(&g, &light.towards), R::from_f64(0.5)) < R::ZERO;
-            let ends = [self.light(light, &at(0), facing), self.light(light, &at(3), facing)];
-            for (end, [lambert, gloss]) in ends.iter().enumerate() {
+            let terms = self.terms(light, &g, &bounds);
+            for end in 0..2 {
                 for c in 0..3 {
-                    result.reflected[end][c] += self.diffuse * light.color[c] * *lambert;
-                    result.highlight[end][c] += self.specular * light.color[c] * *gloss;
+                    result.reflected[end][c] += self.diffuse * light.color[c] * terms.lambert[end];
+                    result.highlight[end][c] += self.specular * light.color[c] * terms.gloss[end];
                 }
             }
-            if facing || self.two_sided {
-                let brightest = light.color[0].max(light.color[1]).max(light.color[2]);
-                let cosines = |v: &[R; 3]| [0, 3].map(|k| bounds.cosine(&at(k), v, self.two_sided));
-                result.reflected_error += self.diffuse * brightest * bounds.of_power(cosines(&light.towards), R::ONE);
-                if self.specular > R::ZERO {
-                    let gloss = bounds.of_power(cosines(&light.half), self.shininess);
-                    result.highlight_error += self.specular * brightest * gloss;
-                }
-            }
+            let brightest = light.color[0].max(light.color[1]).max(light.color[2]);
+            result.reflected_error += self.diffuse * brightest * terms.lambert_error;
+            result.highlight_error += self.specular * brightest * terms.gloss_error;
         }
         result
     }
+}
+
+impl<R: Real> Shader<R> for Lit<R> {
+    type Cell = [Cubic<R>; 3];
 
     #[inline(always)]
-    fn largest_color(&self) -> R {
-        self.largest_color
+    fn cell(&self, _: &Segment, gradient: impl FnOnce() -> [Cubic<R>; 3]) -> [Cubic<R>; 3] {
+        gradient()
+    }
+
+    #[inline(always)]
+    fn cut(&self, g: &[Cubic<R>; 3], splits: &mut Splits<R>) {
+        self.cut(g, splits);
+    }
+
+    #[inline(always)]
+    fn integrate<const N: usize, const M: usize>(
+        &self,
+        optics: &Optics<R, N>,
+        length_mm: R,
+        g: &[Cubic<R>; 3],
+        [from, to]: [R; 2],
+    ) -> Integral<R> {
+        optics.integrate_shaded::<M>(length_mm, &self.factors(g, from, to), self.largest_color)
     }
 }
 

@@ -6,8 +6,10 @@
 //! there are, and a small step would turn the volume transparent.
 
 use crate::classify::Rgbs;
+use crate::integrate::tiles::Radiance;
 use crate::math::{absorbed_f32, mean_transmittance_f32};
 use crate::plan::{Colors, Emission, March, Order, SampleRule};
+use crate::scene::Haze;
 
 /// Light gathered along a ray so far.
 #[derive(Debug, Clone, Copy)]
@@ -20,6 +22,8 @@ pub(super) struct Light {
     stop_below: f64,
     /// The sample before, for rules that read two.
     previous: Option<Rgbs<f32>>,
+    /// Composites a stretch by what it adds and its opacity.
+    stretch: fn(&mut Light, [f64; 3], f64),
 }
 
 impl Light {
@@ -29,7 +33,23 @@ impl Light {
             Order::FrontToBack => settings.termination_transmittance,
             Order::BackToFront => 0.0,
         };
-        Light { color: [0.0; 3], transmittance: 1.0, stop_below, previous: None }
+        let stretch = match settings.order {
+            Order::FrontToBack => FrontToBack::composite::<Associated>,
+            Order::BackToFront => BackToFront::composite::<Associated>,
+        };
+        Light { color: [0.0; 3], transmittance: 1.0, stop_below, previous: None, stretch }
+    }
+
+    /// Composites a stretch of haze alone, in closed form.
+    pub(super) fn cross(&mut self, haze: &Haze, length_mm: f64) {
+        let (added, opacity) = haze.slab(length_mm);
+        (self.stretch)(self, added, opacity);
+    }
+
+    /// What reaches the eye, after so many samples.
+    #[inline(always)]
+    pub(super) fn radiance(&self, samples: u64) -> Radiance {
+        Radiance { color: self.color, transmittance: self.transmittance, samples, error_bound: 0.0 }
     }
 
     /// True when a ray need not go on.

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::classify::{Classifier, Rgbs};
 use crate::field::{GradientUnits, Position, Trilinear, Voxel};
-use crate::integrate::shade::Shader;
+use crate::integrate::shade::{Shader, Spot};
+use crate::scene::Haze;
 
 /// What absorbs and emits. It reads of the volume what it needs, and nothing else; chosen by type, once per frame.
 pub(in super::super) trait Medium: Sync {
@@ -14,8 +15,20 @@ pub(in super::super) trait Medium: Sync {
     /// Computes what is constant along a ray of this direction.
     fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
 
-    /// Shaded emission and extinction at a position, 1/mm, none of them negative.
-    fn sample(&self, aim: &Self::Aim, position: Position) -> Rgbs<f32>;
+    /// Shaded emission and extinction at a position, this far from the ray's origin, 1/mm, none of them negative.
+    fn sample(&self, aim: &Self::Aim, position: Position, distance_mm: f64) -> Rgbs<f32>;
+
+    /// What is there where nothing absorbs or emits of itself.
+    #[inline(always)]
+    fn space(&self) -> Rgbs<f32> {
+        [0.0; 4]
+    }
+
+    /// The medium that is there, if it fills the space around the volume too.
+    #[inline(always)]
+    fn haze(&self) -> Option<&Haze> {
+        None
+    }
 }
 
 /// A scalar field, classified and shaded at each sample.
@@ -36,7 +49,7 @@ impl<V: Voxel, C: Classifier<f32>, S: Shader> Medium for Classified<'_, V, C, S>
     }
 
     #[inline(always)]
-    fn sample(&self, aim: &S::Aim, position: Position) -> Rgbs<f32> {
+    fn sample(&self, aim: &S::Aim, position: Position, distance_mm: f64) -> Rgbs<f32> {
         let cell = position.cell();
         let magnitude = match &self.magnitude {
             Some(magnitude) if C::READS_GRADIENT => magnitude.value(&cell),
@@ -45,9 +58,23 @@ impl<V: Voxel, C: Classifier<f32>, S: Shader> Medium for Classified<'_, V, C, S>
         let optics = self.classifier.classify(self.field.value(&cell), magnitude);
         // Rounding may leave a trace below 0 at the foot of a ramp.
         let optics = optics.map(|x| if x > 0.0 { x } else { 0.0 });
-        if !S::READS_GRADIENT || optics == [0.0; 4] {
+        if !S::SHADES {
             return optics;
         }
-        self.shader.shade(aim, optics, self.units.per_mm(self.field.gradient_per_index(&cell)))
+        if optics == [0.0; 4] {
+            return self.shader.space();
+        }
+        let gradient = || self.units.per_mm(self.field.gradient_per_index(&cell));
+        self.shader.shade(aim, optics, &Spot { cell, distance_mm }, gradient)
+    }
+
+    #[inline(always)]
+    fn space(&self) -> Rgbs<f32> {
+        self.shader.space()
+    }
+
+    #[inline(always)]
+    fn haze(&self) -> Option<&Haze> {
+        self.shader.haze()
     }
 }

@@ -25,7 +25,8 @@ pub(super) use number::show_number;
 pub(super) use surfaces::show_surfaces;
 
 use crate::error::{Error, Fault, Result};
-use crate::plan::March;
+use crate::plan::{Emission, March};
+use crate::scene::Scene;
 use crate::volume::Grid;
 
 /// Samples along one ray beyond which a step is refused.
@@ -34,9 +35,10 @@ const MOST_SAMPLES_PER_RAY: f64 = 1e8;
 /// Refuses settings that mean nothing or would take for ever.
 ///
 /// # Errors
-/// `Fault::Spec` for a step or a transmittance that is no usable number, `Fault::Limit` for a step so small that a ray
+/// `Fault::Unsupported` for haze with emission per sample, `Fault::Spec` for a step or a transmittance that is no usable
+/// number, `Fault::Limit` for a step so small that a ray
 /// through the volume would take more than 10⁸ samples.
-pub(super) fn check(settings: &March, grid: &Grid) -> Result<()> {
+pub(super) fn check(settings: &March, scene: &Scene, grid: &Grid) -> Result<()> {
     let step = settings.step_mm;
     if !(step.is_finite() && step > 0.0) {
         return Err(Error::new(Fault::Spec, "the step is not usable")
@@ -50,6 +52,12 @@ pub(super) fn check(settings: &March, grid: &Grid) -> Result<()> {
             .element("integrate.march.termination_transmittance")
             .found(least.to_string())
             .expected("a number from 0 (never) to below 1"));
+    }
+    if scene.effects.haze.is_some() && settings.emission == Emission::PerSample {
+        return Err(Error::new(Fault::Unsupported, "haze has no samples to emit by")
+            .element("integrate.march.emission")
+            .found("emission per sample")
+            .remedy("use emission: per-length, the default, or leave haze out"));
     }
     // The longest chord of a parallelepiped is one of its four diagonals.
     let corners = grid.corners_mm();

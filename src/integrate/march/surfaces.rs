@@ -12,7 +12,7 @@ use crate::integrate::empty_space::{EmptySpace, Leap};
 use crate::integrate::tiles::{self, Radiance};
 use crate::integrate::{Frame, Rendered, Statistics};
 use crate::plan::{March, Order, SampleRule};
-use crate::scene::{Ray, Shading, Surface};
+use crate::scene::{Ray, Scene, Surface};
 use crate::volume::Samples;
 
 /// Renders level surfaces.
@@ -37,7 +37,7 @@ fn show<V: Voxel>(frame: &Frame<'_>, settings: &March, surfaces: &[Surface], vox
         sign: rescale.slope.signum(),
         levels,
         surfaces,
-        shading: frame.scene.shading.as_ref(),
+        scene: frame.scene,
         bisections: settings.bisections,
         stop_below: settings.termination_transmittance,
         without_levels,
@@ -69,7 +69,7 @@ struct Kernel<'a, V> {
     /// Stored values, one per surface.
     levels: Vec<f64>,
     surfaces: &'a [Surface],
-    shading: Option<&'a Shading>,
+    scene: &'a Scene,
     bisections: u32,
     /// A ray stops below this transmittance.
     stop_below: f64,
@@ -171,14 +171,14 @@ impl<V: Voxel> Kernel<'_, V> {
     }
 
     fn composite(&self, walk: &mut Walk<'_>, at_mm: f64, &Surface { opacity, color, .. }: &Surface) {
-        let (reflected, highlight) = match self.shading {
-            Some(shading) => {
-                let cell = Position::new(walk.chord.index_at(at_mm), self.field.dims()).cell();
-                let gradient = self.units.per_mm(self.field.gradient_per_index(&cell)).map(f64::from);
-                shading.factors(gradient.into(), walk.ray.direction)
-            }
-            None => ([1.0; 3], [0.0; 3]),
-        };
+        // Nobody reads the gradient of what is not lit.
+        let gradient = self.scene.shading.as_ref().map_or([0.0; 3], |_| {
+            let cell = Position::new(walk.chord.index_at(at_mm), self.field.dims()).cell();
+            self.units.per_mm(self.field.gradient_per_index(&cell)).map(f64::from)
+        });
+        // Between surfaces nothing absorbs, so that they cast no shadows.
+        let from_origin_mm = walk.chord.entry_mm + at_mm;
+        let (reflected, highlight) = self.scene.factors(&walk.ray, from_origin_mm, gradient.into(), |_| 1.0);
         for c in 0..3 {
             walk.color[c] += walk.transmittance * opacity * (color[c] * reflected[c] + highlight[c]);
         }

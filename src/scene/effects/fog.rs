@@ -46,6 +46,14 @@ impl FogLaw {
         };
         f.clamp(0.0, 1.0)
     }
+
+    /// True if nothing within a distance in mm is fogged.
+    pub fn is_clear_until(&self, distance_mm: f64) -> bool {
+        match *self {
+            FogLaw::Linear { start_mm, .. } => start_mm >= distance_mm,
+            FogLaw::Exp { density_per_mm } | FogLaw::Exp2 { density_per_mm } => density_per_mm == 0.0,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -59,5 +67,13 @@ mod tests {
         let half = 2.0_f64.ln();
         assert!((FogLaw::Exp { density_per_mm: half / 10.0 }.clearness(20.0) - 0.25).abs() < 1e-15);
         assert!((FogLaw::Exp2 { density_per_mm: half.sqrt() / 10.0 }.clearness(20.0) - 0.0625).abs() < 1e-15);
+    }
+
+    #[test]
+    fn fog_of_no_density_and_fog_behind_everything_are_clear() {
+        assert!(FogLaw::Exp { density_per_mm: 0.0 }.is_clear_until(1e9));
+        assert!(FogLaw::Linear { start_mm: 100.0, end_mm: 300.0 }.is_clear_until(100.0));
+        assert!(!FogLaw::Linear { start_mm: 100.0, end_mm: 300.0 }.is_clear_until(100.1));
+        assert!(!FogLaw::Exp2 { density_per_mm: 1e-9 }.is_clear_until(1.0));
     }
 }

@@ -14,3 +14,30 @@ pub struct Haze {
     /// Where it ends along each ray, mm; no point of the volume lies beyond.
     pub end_mm: f64,
 }
+
+impl Haze {
+    /// What a stretch of haze alone does to light: what it sends towards the eye, linear RGB, and its opacity.
+    pub fn slab(&self, length_mm: f64) -> ([f64; 3], f64) {
+        let opacity = -(-self.extinction_per_mm * length_mm).exp_m1();
+        (self.color.map(|c| c * opacity), opacity)
+    }
+
+    /// σ_h C, 1/mm.
+    pub fn emission_per_mm(&self) -> [f64; 3] {
+        self.color.map(|c| c * self.extinction_per_mm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slabs_in_a_row_are_one_slab() {
+        let haze = Haze { extinction_per_mm: 0.01, color: [1.0, 0.5, 0.0], end_mm: 1e3 };
+        let (near, far, both) = (haze.slab(30.0), haze.slab(70.0), haze.slab(100.0));
+        let joined = near.0[1] + (1.0 - near.1) * far.0[1];
+        assert!((joined - both.0[1]).abs() < 1e-15, "found {joined}, expected {}", both.0[1]);
+        assert!((both.1 - (1.0 - (-1.0f64).exp())).abs() < 1e-15, "found {}", both.1);
+    }
+}

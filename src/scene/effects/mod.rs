@@ -37,6 +37,14 @@ pub struct Effects {
     pub haze: Option<Haze>,
 }
 
+impl Effects {
+    /// Whether any effect of light is there: depth cue, shadows, scattering, fog or haze.
+    pub fn change_light(&self) -> bool {
+        let Effects { depth_cue, shadows, scattering, fog, haze, .. } = self;
+        depth_cue.is_some() || shadows.is_some() || scattering.is_some() || fog.is_some() || haze.is_some()
+    }
+}
+
 /// Where the transfer function is evaluated, and what is then interpolated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ClassifyAt {

@@ -12,3 +12,20 @@ pub struct Shadows {
     /// 0 for none to 1 for all of it.
     pub strength: f64,
 }
+
+impl Shadows {
+    /// V for a transmittance T towards a light.
+    pub fn visibility(&self, transmittance: f64) -> f64 {
+        1.0 - self.strength * (1.0 - transmittance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strength_goes_from_no_shadow_to_all_of_it() {
+        assert_eq!([0.0, 0.5, 1.0].map(|strength| Shadows { strength }.visibility(0.25)), [1.0, 0.625, 0.25]);
+    }
+}

@@ -1,10 +1,11 @@
 //! Checks on effects, and on what they leave for others to read.
 
 use super::clip::check_clip;
+use super::light::{check_directions, check_effects_of_light};
 use super::show::{check_marched, check_projection, check_transport, reads_transfer_function};
 use super::{Check, join};
 use crate::error::Result;
-use crate::spec::{EffectsSpec, LightSpec, Pipeline};
+use crate::spec::{EffectsSpec, Pipeline};
 
 /// Light needs a transfer function; numbers of the values, and surfaces, have no use for one, nor numbers for shading.
 pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<()> {
@@ -17,6 +18,18 @@ pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<
     check.unread("transfer_function", written && !read, why)?;
     check.unread("effects.shading", effects.shading.is_some() && project, "a number of the values has no light")?;
     check_transport(check, &effects)?;
+    let needs_light = [
+        ("depth_cue", effects.depth_cue.is_some(), true),
+        ("fog", effects.fog.is_some(), true),
+        ("haze", effects.haze.is_some(), false),
+        ("shadows", effects.shadows.is_some(), false),
+        ("scattering", effects.scattering.is_some(), false),
+    ];
+    for (effect, given, on_surfaces) in needs_light {
+        let path = join("effects", effect);
+        check.unread(&path, given && project, "a number of the values has no light")?;
+        check.unread(&path, given && surfaces && !on_surfaces, "between surfaces nothing absorbs or scatters")?;
+    }
     check_marched(check, pipeline)?;
     check.require("transfer_function", written || !read, "at least one layer")
 }
@@ -35,6 +48,7 @@ pub(super) fn check_effects(check: Check<'_>, effects: &EffectsSpec) -> Result<(
             check.require(&format!("effects.surfaces.{i}.opacity"), within, "0 to 1")?;
         }
     }
+    check_effects_of_light(check, effects)?;
     let Some(shading) = &effects.shading else { return Ok(()) };
     let path = |key: &str| join("effects.shading", key);
     check.at_least(&path("ambient"), shading.ambient, 0.0)?;
@@ -44,11 +58,5 @@ pub(super) fn check_effects(check: Check<'_>, effects: &EffectsSpec) -> Result<(
     check.at_least(&path("soft_gradient_hu_per_mm"), shading.soft_gradient_hu_per_mm, 0.0)?;
     let Some(lights) = &shading.lights else { return Ok(()) };
     check.require(&path("lights"), !lights.is_empty(), "at least one light; without the key it is a headlight")?;
-    for (i, light) in lights.iter().enumerate() {
-        if let LightSpec::Directional { towards, .. } = light {
-            let path = path(&format!("lights.{i}.directional.towards"));
-            check.require(&path, towards.iter().any(|x| *x != 0.0), "a direction of any length but 0")?;
-        }
-    }
-    Ok(())
+    check_directions(check, &path("lights"), lights)
 }

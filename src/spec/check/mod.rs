@@ -4,6 +4,7 @@ mod analytic;
 mod camera;
 mod clip;
 mod effects;
+mod light;
 mod pipeline;
 mod show;
 mod widget;

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::analytic::check_analytic;
 use super::camera::check_camera;
 use super::effects::{check_effects, check_what_shows};
+use super::light::check_emission;
 use super::widget::check_widgets;
 use super::{Check, join};
 use crate::error::Result;
@@ -41,6 +42,7 @@ pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> R
     if let Some(integrate) = &pipeline.integrate {
         check_integrate(check, integrate)?;
     }
+    check_emission(check, pipeline)?;
     check.require("certify", pipeline.certify != Some(0), "a number of pixels of at least 1")?;
     check_output(check, pipeline.image.as_ref(), pipeline.output.as_deref())
 }

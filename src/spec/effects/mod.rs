@@ -1,11 +1,21 @@
 //! Effects as written: what a scene asks for beyond emission and absorption.
 
 mod clip;
+mod depth_cue;
+mod fog;
+mod haze;
+mod scattering;
 mod shading;
+mod shadows;
 mod show;
 
 pub use clip::{ClipBoxSpec, ClipPlaneSpec, ClipSpec, RangeSpec, TrimSpec};
+pub use depth_cue::DepthCueSpec;
+pub use fog::{ExpFogSpec, FogSpec, LinearFogSpec};
+pub use haze::HazeSpec;
+pub use scattering::ScatteringSpec;
 pub use shading::{LightSpec, ShadingSpec};
+pub use shadows::ShadowsSpec;
 pub use show::{ProjectSpec, ProjectionOf, SurfaceSpec, TransportName};
 
 use schemars::JsonSchema;
@@ -24,6 +34,21 @@ pub struct EffectsSpec {
     /// Levoy's gradient shading with the Blinn-Phong reflection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingSpec>,
+    /// Levoy's depth cue: dims the lit terms of shading with distance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth_cue: Option<DepthCueSpec>,
+    /// Shadows that the volume casts on itself, towards the directional lights of shading.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shadows: Option<ShadowsSpec>,
+    /// Light scattered once, from directional lights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scattering: Option<ScatteringSpec>,
+    /// Fog as OpenGL defines it: colours fade to that of the fog with distance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fog: Option<FogSpec>,
+    /// Fog as a medium that fills the space in front of the volume, in it and behind it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub haze: Option<HazeSpec>,
     /// Shows one number of what lies along each ray as a grey, instead of light.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub project: Option<ProjectSpec>,
