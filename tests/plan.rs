@@ -12,6 +12,7 @@ mod demand;
 mod explain;
 mod method;
 mod shapes;
+mod show;
 mod transfer_function;
 
 /// A pipeline of one opaque bone widget, and whatever follows.

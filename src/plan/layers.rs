@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::spec::{
-    AttenuationSpec, Color, ContourSpec, EmissionSpec, LayerSpec, LoadedPreset, Pipeline, Spec, Tissue, ValuesName, Widget,
+    AttenuationSpec, Color, ContourSpec, EmissionSpec, LayerSpec, LoadedPreset, Pipeline, Spec, Tissue, ValuesName,
+    Widget,
 };
 use crate::transfer::attenuation::Attenuation;
 use crate::transfer::shapes::{Ellipse, Expansion, Gaussian, Shape, Triangle, extinction_per_mm};
@@ -84,13 +85,21 @@ fn attenuation(spec: &AttenuationSpec) -> Attenuation {
 }
 
 /// What is in HU means nothing on values of unknown meaning, unless the layer says how the two relate.
-fn refuse_hu_for_other_values(spec: &Spec, volume: &VolumeInfo, layer: &LayerSpec, [path, kind]: [&str; 2]) -> Result<()> {
+fn refuse_hu_for_other_values(
+    spec: &Spec,
+    volume: &VolumeInfo,
+    layer: &LayerSpec,
+    [path, kind]: [&str; 2],
+) -> Result<()> {
     if volume.quantity == Quantity::Hu || layer.scale.is_some() || layer.shift_hu.is_some() {
         return Ok(());
     }
     let [low, high] = volume.value_range;
     Err(spec
-        .error(&format!("{path}.{kind}"), format!("this {kind} is in HU, and the volume does not say that its values are"))
+        .error(
+            &format!("{path}.{kind}"),
+            format!("this {kind} is in HU, and the volume does not say that its values are"),
+        )
         .found(format!("values from {low} to {high} of unknown unit"))
         .remedy(
             "write volume: { values: hu } if they are HU, volume: { shift_hu: -1024 } if they are HU + 1024, \

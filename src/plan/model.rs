@@ -81,7 +81,11 @@ pub(super) fn describe(model: &Model, quantity: Quantity) -> Option<String> {
                 opacity => format!("{}{unit} of opacity {opacity}", s.value),
             };
             let surfaces: Vec<String> = surfaces.iter().map(surface).collect();
-            Some(if surfaces.is_empty() { "no surface".to_owned() } else { format!("surfaces at {}", surfaces.join(", ")) })
+            Some(if surfaces.is_empty() {
+                "no surface".to_owned()
+            } else {
+                format!("surfaces at {}", surfaces.join(", "))
+            })
         }
     }
 }
@@ -102,7 +106,10 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     match effects.light {
         Some(TransportName::Absorption) => omit("emission", "effects.light shows absorption alone".to_owned()),
         Some(TransportName::Emission) => {
-            omit("absorption", "effects.light shows emission alone, without highlights, which are of what absorbs".to_owned());
+            omit(
+                "absorption",
+                "effects.light shows emission alone, without highlights, which are of what absorbs".to_owned(),
+            );
         }
         Some(TransportName::Both) | None => {}
     }

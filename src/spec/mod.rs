@@ -34,8 +34,8 @@ pub use integrate::{
 };
 pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset};
 pub use pipeline::{
-    AttenuationSpec, BackgroundSpec, Bits, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec, PhantomHead, PhantomSpec, Pipeline,
-    Series, ValuesName, VolumeSpec,
+    AttenuationSpec, BackgroundSpec, Bits, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec, PhantomHead, PhantomSpec,
+    Pipeline, Series, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
 pub use schema::{pipeline_schema, preset_schema};

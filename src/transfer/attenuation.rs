@@ -66,12 +66,8 @@ impl Material {
     /// `μ/ρ` at the energies of the tables, cm²/g.
     fn mass_attenuation_cm2_per_g(self) -> [f64; 11] {
         match self {
-            Material::Air => {
-                [5.120, 1.614, 0.7779, 0.3538, 0.2485, 0.2080, 0.1875, 0.1662, 0.1541, 0.1356, 0.1233]
-            }
-            Material::Water => {
-                [5.329, 1.673, 0.8096, 0.3756, 0.2683, 0.2269, 0.2059, 0.1837, 0.1707, 0.1505, 0.1370]
-            }
+            Material::Air => [5.120, 1.614, 0.7779, 0.3538, 0.2485, 0.2080, 0.1875, 0.1662, 0.1541, 0.1356, 0.1233],
+            Material::Water => [5.329, 1.673, 0.8096, 0.3756, 0.2683, 0.2269, 0.2059, 0.1837, 0.1707, 0.1505, 0.1370],
             Material::CorticalBone => {
                 [28.51, 9.032, 4.001, 1.331, 0.6655, 0.4242, 0.3148, 0.2229, 0.1855, 0.1480, 0.1309]
             }
@@ -115,10 +111,7 @@ impl Attenuation {
             .map(|material| material.attenuation_per_mm(self.kev));
         let bone_hu = self.bone_hu();
         let far = water + (bone - water) * (FAR_HU / bone_hu);
-        let knot = |(value, extinction_per_mm)| Knot {
-            value,
-            optics: Optics { extinction_per_mm, ..Optics::NOTHING },
-        };
+        let knot = |(value, extinction_per_mm)| Knot { value, optics: Optics { extinction_per_mm, ..Optics::NOTHING } };
         Curve::new([(-1000.0, air), (0.0, water), (bone_hu, bone), (FAR_HU, far)].map(knot).to_vec())
     }
 }
@@ -142,7 +135,10 @@ mod tests {
             (Material::Air, 80.0, 1.205e-3 * 0.1662),
         ] {
             let found = 10.0 * material.attenuation_per_mm(kev);
-            assert!((found / per_cm - 1.0).abs() < 1e-12, "{material:?} at {kev} keV: {found}, expected {per_cm} per cm");
+            assert!(
+                (found / per_cm - 1.0).abs() < 1e-12,
+                "{material:?} at {kev} keV: {found}, expected {per_cm} per cm"
+            );
         }
     }
 

@@ -13,7 +13,10 @@ pub(super) struct Blocks {
 impl Blocks {
     pub(super) fn new<V: Voxel>(field: &Trilinear<'_, V>) -> Self {
         let macrocells = Macrocells::new(field);
-        Blocks { blocks: macrocells.blocks(), ranges: macrocells.ranges().iter().map(|&range| widened(range)).collect() }
+        Blocks {
+            blocks: macrocells.blocks(),
+            ranges: macrocells.ranges().iter().map(|&range| widened(range)).collect(),
+        }
     }
 
     /// How many samples at this pace, from `position` on, lie in its block, and whether `matters` holds of its range.

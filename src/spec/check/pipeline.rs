@@ -9,7 +9,8 @@ use super::{Check, join};
 use crate::error::Result;
 use crate::spec::source::Source;
 use crate::spec::{
-    AttenuationSpec, ImageSpec, IntegrateSpec, LayerSpec, MarchSpec, OrderName, PhantomSpec, Pipeline, ValuesName, VolumeSpec,
+    AttenuationSpec, ImageSpec, IntegrateSpec, LayerSpec, MarchSpec, OrderName, PhantomSpec, Pipeline, ValuesName,
+    VolumeSpec,
 };
 use crate::transfer::attenuation::ENERGIES_KEV;
 

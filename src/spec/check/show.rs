@@ -32,7 +32,11 @@ pub(super) fn check_projection(check: Check<'_>, project: &ProjectSpec) -> Resul
         check.require(&path(key), rises, "[lowest, highest], the lower first")?;
         // No number of the pipeline says how long rays are or how dense the patient is.
         let needed = key == unit && key != "window_hu";
-        check.needed(&path(key), window.is_some() || !needed, &format!("{key}: [black, white], which has no default"))?;
+        check.needed(
+            &path(key),
+            window.is_some() || !needed,
+            &format!("{key}: [black, white], which has no default"),
+        )?;
     }
     let local = project.show == ProjectionOf::LocalMaximum;
     let threshold = project.threshold_hu.is_some();
