@@ -1,4 +1,11 @@
-//! Pictures that are not of light: extremes, means and level surfaces, held against the oracle and closed forms.
+//! Pictures that are not of light, or of a part of it: numbers along rays, level surfaces, absorption and emission alone,
+//! radiographs; held against the oracle and closed forms.
+
+mod closed_forms;
+mod marched;
+mod marched_surfaces;
+mod radiographs;
+mod transport;
 
 use glam::DVec3;
 use pellucid::integrate::exact::{Precision, tracer};
@@ -8,7 +15,9 @@ use pellucid::plan::{Exact, Method};
 use pellucid::scene::{Background, Model, Projection, Scene, Surface, ValueModel, ValueOf};
 use pellucid::volume::{Rescale, Volume};
 
-use crate::support::scenes::{BLUE, BONE, RED, rough_volume, scene_around, two_lights, unit_grid, volume_of};
+use crate::support::scenes::{
+    BLUE, BONE, RED, rough_volume, scene_around, thin_shell, two_colors, two_lights, unit_grid, volume_of,
+};
 
 fn greatest_error(volume: &Volume, scene: &Scene) -> f64 {
     let oracle = Oracle::new(volume, scene);
@@ -30,8 +39,13 @@ fn greatest_error(volume: &Volume, scene: &Scene) -> f64 {
     worst
 }
 
+/// Numbers of the values alone.
+const NUMBERS: [ValueOf; 5] =
+    [ValueOf::Maximum, ValueOf::Minimum, ValueOf::Mean, ValueOf::Sum, ValueOf::LocalMaximum { threshold: 250.0 }];
+
 fn values(volume: &Volume, of: ValueOf) -> Scene {
-    let model = Model::Value(ValueModel { of, window: [-700.0, 1200.0] });
+    let window = if of == ValueOf::Sum { [-1000.0, 7000.0] } else { [-700.0, 1200.0] };
+    let model = Model::Value(ValueModel { of, window });
     Scene { model, ..scene_around(volume, vec![], None, [24, 24]) }
 }
 
@@ -39,9 +53,38 @@ fn values(volume: &Volume, of: ValueOf) -> Scene {
 fn numbers_of_the_values_agree_with_the_oracle_for_any_rescale() {
     for rescale in [Rescale::IDENTITY, Rescale { slope: -0.5, intercept: 200.0 }] {
         let volume = rough_volume(9).with_rescale(rescale);
-        for of in [ValueOf::Maximum, ValueOf::Minimum, ValueOf::Mean] {
+        for of in NUMBERS {
             let error = greatest_error(&volume, &values(&volume, of));
-            assert!(error < 1e-12, "{of:?}, {rescale:?}: error {error:e}");
+            assert!(error < 1e-10, "{of:?}, {rescale:?}: error {error:e}");
+        }
+    }
+}
+
+#[test]
+fn local_maxima_agree_with_the_oracle_for_any_threshold() {
+    let volume = rough_volume(9);
+    let shown = |threshold| values(&volume, ValueOf::LocalMaximum { threshold });
+    for threshold in [-5000.0, -200.0, 250.0, 700.0, 5000.0] {
+        let error = greatest_error(&volume, &shown(threshold));
+        assert!(error < 1e-10, "from {threshold} HU: error {error:e}");
+    }
+    // And they differ from the overall one, where the threshold is low.
+    let ray = shown(0.0).camera.pixel_ray(12, 12);
+    let [low, high] = [250.0, 5000.0].map(|threshold| Oracle::new(&volume, &shown(threshold)).radiance(&ray)[0]);
+    assert!(low < high, "first local maximum {low}, overall maximum {high}");
+}
+
+#[test]
+fn optical_depths_agree_with_the_oracle_in_one_and_two_dimensions() {
+    for rescale in [Rescale::IDENTITY, Rescale { slope: -0.5, intercept: 200.0 }] {
+        let volume = rough_volume(9).with_rescale(rescale);
+        for terms in [vec![two_colors()], vec![two_colors(), thin_shell()]] {
+            let of = ValueOf::OpticalDepth;
+            let model = Model::Value(ValueModel { of, window: [0.0, 8.0] });
+            let scene = Scene { model, ..scene_around(&volume, terms, None, [24, 24]) };
+            let error = greatest_error(&volume, &scene);
+            let reads_gradient = scene.transfer_function.reads_gradient();
+            assert!(error < 1e-10, "reads the gradient {reads_gradient}, {rescale:?}: error {error:e}");
         }
     }
 }

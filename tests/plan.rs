@@ -13,6 +13,7 @@ mod demand;
 mod explain;
 mod method;
 mod shapes;
+mod show;
 mod transfer_function;
 
 /// A pipeline of one opaque bone widget, and whatever follows.

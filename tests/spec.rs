@@ -11,6 +11,7 @@ mod mistakes;
 mod overrides;
 mod presets;
 mod schema;
+mod show;
 
 /// The shortest pipeline.
 const SHORT: &str = "version: 1

@@ -21,8 +21,10 @@ pub fn explain(plan: &Plan) -> String {
     if !plan.layers.is_empty() {
         line(&mut text, "layers", &layer_names(plan));
     }
-    if !matches!(plan.scene.model, Model::Value(_)) {
-        line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
+    match (&plan.scene.model, &plan.scene.shading) {
+        (Model::Value(_), _) => {}
+        (Model::Surfaces(_), None) => line(&mut text, "light", "none: the surfaces' own colours"),
+        (_, shading) => line(&mut text, "light", &describe_shading(shading.as_ref())),
     }
     let effects = effects::in_words(&plan.scene.effects);
     if !effects.is_empty() {

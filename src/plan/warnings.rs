@@ -7,7 +7,7 @@ use crate::volume::Quantity;
 
 use super::clip;
 use super::model::reads_transfer_function;
-use super::{Exact, Method, Plan, VolumeInfo};
+use super::{Exact, Format, Method, Plan, VolumeInfo};
 
 pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -29,6 +29,10 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     if is_black(&plan.scene) {
         let why = "nothing emits and the background is black, so the picture will be black";
         warnings.push(format!("{why}; image.background lights the volume from behind"));
+    }
+    if adds_light_without_alpha(&plan.scene) && plan.output.format != Format::Exr {
+        let why = "emission alone has no alpha, and a PNG cannot hold light without alpha";
+        warnings.push(format!("{why}; write image.background: black, or an OpenEXR picture"));
     }
     if plan.scene.model == Model::Surfaces(Vec::new()) {
         warnings.push("no surface has any opacity: the picture will show the background alone".to_owned());
@@ -76,6 +80,16 @@ fn is_black(scene: &Scene) -> bool {
         && shading.is_none()
         && *background == Background::Color([0.0; 3])
         && *effects == Effects::default()
+}
+
+/// True if light is emitted, nothing is absorbed and the picture keeps its alpha of 0.
+fn adds_light_without_alpha(scene: &Scene) -> bool {
+    let terms = scene.transfer_function.terms();
+    let mut knots = terms.iter().flat_map(|term| term.curve.knots());
+    scene.model == Model::Light
+        && !terms.is_empty()
+        && knots.all(|knot| knot.optics.extinction_per_mm == 0.0)
+        && scene.background == Background::Transparent
 }
 
 /// True if the transfer function is 0 at all values of the volume, at any gradient magnitude.
