@@ -21,6 +21,7 @@ mod collocation;
 mod fields;
 mod light;
 mod lit_piece;
+mod masked;
 mod models;
 mod panel;
 mod patches;
@@ -40,6 +41,7 @@ use collocation::{Collocation, Stretch};
 use fields::Fields;
 use light::Light;
 use lit_piece::LitPiece;
+use masked::Functions;
 use panel::PanelRule;
 use patches::Patches;
 use path::Path;
@@ -51,7 +53,7 @@ use splits::Splits;
 pub struct Oracle<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
-    patches: Patches,
+    functions: Functions<'a>,
     cubic: PanelRule<4>,
     sextic: PanelRule<7>,
     collocation: Collocation,
@@ -63,7 +65,7 @@ impl<'a> Oracle<'a> {
         Oracle {
             volume,
             scene,
-            patches: Patches::new(&scene.transfer_function),
+            functions: Functions::new(volume, scene),
             cubic: PanelRule::new(),
             sextic: PanelRule::new(),
             collocation: Collocation::new(),
@@ -120,14 +122,14 @@ impl<'a> Oracle<'a> {
     /// The same as [`Oracle::segment`] by method B whatever the scene: to hold one method against the other.
     pub fn segment_by_collocation(&self, ray: &Ray, from_mm: f64, to_mm: f64) -> Segment {
         let shaded = self.scene.shading.as_ref().map(|shading| ShadedRay::new(shading, ray.direction));
-        self.walk(ray, from_mm, to_mm, |fields, length_mm, splits, light| {
-            fields.add_knots(&self.patches, splits);
+        self.walk(ray, from_mm, to_mm, |fields, patches, length_mm, splits, light| {
+            fields.add_knots(patches, splits);
             if let (Some(shaded), Some(gradient)) = (&shaded, &fields.gradient) {
                 shaded.add_bends(gradient, splits);
             }
             for ends in splits.pieces() {
-                let Some(piece) = fields.piece(&self.patches, ends) else { continue };
-                let lit = LitPiece { fields, patches: &self.patches, piece, shaded: shaded.as_ref() };
+                let Some(piece) = fields.piece(patches, ends) else { continue };
+                let lit = LitPiece { fields, patches, piece, shaded: shaded.as_ref() };
                 let width = piece.to - piece.from;
                 let stretch = Stretch { from: piece.from, width, length_mm: width * length_mm };
                 self.collocation.integrate(&lit, stretch, light);
@@ -136,14 +138,14 @@ impl<'a> Oracle<'a> {
     }
 
     fn by_panels(&self, ray: &Ray, from_mm: f64, to_mm: f64) -> Segment {
-        self.walk(ray, from_mm, to_mm, |fields, length_mm, splits, light| {
-            fields.add_knots(&self.patches, splits);
+        self.walk(ray, from_mm, to_mm, |fields, patches, length_mm, splits, light| {
+            fields.add_knots(patches, splits);
             for ends in splits.pieces() {
-                let Some(piece) = fields.piece(&self.patches, ends) else { continue };
+                let Some(piece) = fields.piece(patches, ends) else { continue };
                 let length_mm = (piece.to - piece.from) * length_mm;
-                match fields.sextic_panel(&self.patches, &piece, length_mm) {
+                match fields.sextic_panel(patches, &piece, length_mm) {
                     Some(panel) => self.sextic.integrate(&panel, light),
-                    None => self.cubic.integrate(&fields.cubic_panel(&self.patches, &piece, length_mm), light),
+                    None => self.cubic.integrate(&fields.cubic_panel(patches, &piece, length_mm), light),
                 }
             }
         })
@@ -155,22 +157,26 @@ impl<'a> Oracle<'a> {
         Path::new(self.volume.grid(), ray, from_mm.max(first_mm), to_mm.min(last_mm))
     }
 
-    /// Gathers light cell by cell, from the eye on; `gather` is given the fields along a passage and its length in mm.
+    /// Gathers light cell by cell, from the eye on; `gather` is given the fields along a passage, the
+    /// transfer function there and its length in mm.
     fn walk(
         &self,
         ray: &Ray,
         from_mm: f64,
         to_mm: f64,
-        gather: impl Fn(&Fields, f64, &mut Splits, &mut Light),
+        gather: impl Fn(&Fields, &Patches, f64, &mut Splits, &mut Light),
     ) -> Segment {
         let mut light = Light::default();
         let mut splits = Splits::default();
         let path = self.path(ray, from_mm, to_mm);
         for passage in path.iter().flat_map(Path::passages) {
             let shaded = self.scene.shading.is_some();
-            if let Some(fields) = Fields::new(self.volume, &self.patches, shaded, &passage) {
-                splits.restart();
-                gather(&fields, passage.length_mm, &mut splits, &mut light);
+            for (passage, patches) in self.functions.along(passage) {
+                let Some(patches) = patches else { continue };
+                if let Some(fields) = Fields::new(self.volume, patches, shaded, &passage) {
+                    splits.restart();
+                    gather(&fields, patches, passage.length_mm, &mut splits, &mut light);
+                }
             }
             if light.is_opaque() {
                 break;

@@ -15,7 +15,7 @@ use crate::scene::{Ray, Surface, ValueModel, ValueOf};
 /// One number of the values along a ray, or `None` if it misses the volume.
 pub(super) fn number(oracle: &Oracle<'_>, model: &ValueModel, ray: &Ray) -> Option<f64> {
     let (mut most, mut least, mut total, mut length_mm) = (f64::NEG_INFINITY, f64::INFINITY, 0.0, 0.0);
-    for (passage, value) in passages(oracle, ray) {
+    for (passage, value) in passages(oracle, ray).flatten() {
         for [from, to] in critical_points(&value.0).stretches() {
             for v in [value.at(from), value.at(to)] {
                 most = f64::max(most, v);
@@ -36,7 +36,12 @@ pub(super) fn number(oracle: &Oracle<'_>, model: &ValueModel, ray: &Ray) -> Opti
 pub(super) fn surfaces(oracle: &Oracle<'_>, surfaces: &[Surface], ray: &Ray) -> [f64; 4] {
     let (mut rgb, mut transmittance) = ([0.0; 3], 1.0);
     let mut inside: Vec<Option<bool>> = vec![None; surfaces.len()];
-    for (passage, value) in passages(oracle, ray) {
+    for shown in passages(oracle, ray) {
+        let Some((passage, value)) = shown else {
+            // What is hidden has no inside, and its border is no crossing.
+            inside.fill(None);
+            continue;
+        };
         let mut found: Vec<(f64, usize)> = Vec::new();
         for (n, surface) in surfaces.iter().enumerate() {
             let is_inside = |t: f64| value.at(t) >= surface.value;
@@ -69,10 +74,13 @@ pub(super) fn surfaces(oracle: &Oracle<'_>, surfaces: &[Surface], ray: &Ray) -> 
     [r, g, b, 1.0 - transmittance]
 }
 
-fn passages<'a>(oracle: &'a Oracle<'_>, ray: &Ray) -> impl Iterator<Item = (Passage, Cubic)> + 'a {
+/// The values along the passages of a ray; `None` for a hidden one.
+fn passages<'a>(oracle: &'a Oracle<'_>, ray: &Ray) -> impl Iterator<Item = Option<(Passage, Cubic)>> + 'a {
     let path = oracle.path(ray, 0.0, f64::INFINITY);
-    path.into_iter().flat_map(|path| path.passages().collect::<Vec<_>>()).map(|passage| {
+    let passages = path.into_iter().flat_map(|path| path.passages().collect::<Vec<_>>());
+    passages.flat_map(|passage| oracle.functions.along(passage)).map(|(passage, patches)| {
+        patches?;
         let values = Cell::new(oracle.volume, passage.cell).values();
-        (passage, along(&values, &passage))
+        Some((passage, along(&values, &passage)))
     })
 }

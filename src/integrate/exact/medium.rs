@@ -11,17 +11,12 @@ use super::shade::Shader;
 use super::splits::Splits;
 
 /// What absorbs and emits along a ray, by a baked transfer function.
-pub(super) trait Medium<R: Real>: Classifier<R> {
+pub(super) trait Medium<R: Real>: Sync {
     /// The scalar fields along a segment: cubics.
     type Fields;
 
     /// The fields along a segment, or `None` if nothing absorbs or emits there. `gradients` gives those at the corners.
-    fn fields(
-        &self,
-        stored: &[R; 8],
-        segment: &Segment,
-        gradients: impl FnOnce() -> [[R; 8]; 3],
-    ) -> Option<Self::Fields>;
+    fn fields(&self, stored: &[R; 8], segment: &Segment, gradients: impl Fn() -> [[R; 8]; 3]) -> Option<Self::Fields>;
 
     /// Cuts the segment where a field crosses a knot.
     fn cut(&self, fields: &Self::Fields, splits: &mut Splits<R>);
@@ -42,7 +37,7 @@ impl<R: Real> Medium<R> for OneD<R> {
     type Fields = Cubic<R>;
 
     #[inline(always)]
-    fn fields(&self, stored: &[R; 8], segment: &Segment, _: impl FnOnce() -> [[R; 8]; 3]) -> Option<Cubic<R>> {
+    fn fields(&self, stored: &[R; 8], segment: &Segment, _: impl Fn() -> [[R; 8]; 3]) -> Option<Cubic<R>> {
         let dark = |r: [R; 2]| self.is_empty(r, [R::ZERO; 2]);
         if dark(range(stored)) {
             return None;
@@ -85,12 +80,7 @@ impl<R: Real> Medium<R> for TwoD<R> {
     type Fields = [Cubic<R>; 2];
 
     #[inline(always)]
-    fn fields(
-        &self,
-        stored: &[R; 8],
-        segment: &Segment,
-        gradients: impl FnOnce() -> [[R; 8]; 3],
-    ) -> Option<[Cubic<R>; 2]> {
+    fn fields(&self, stored: &[R; 8], segment: &Segment, gradients: impl Fn() -> [[R; 8]; 3]) -> Option<[Cubic<R>; 2]> {
         let everything = [R::ZERO, self.gradients().knots()[self.gradients().intervals()]];
         if self.is_empty(range(stored), everything) {
             return None;

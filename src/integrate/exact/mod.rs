@@ -8,15 +8,18 @@
 mod budget;
 mod cells;
 mod lattice;
+mod masked;
 mod medium;
 mod models;
+mod nearest;
 mod piece;
 mod ray;
 mod shade;
+mod shown;
 mod splits;
 mod values;
 
-use crate::classify::{Baked, bake};
+use crate::classify::{Baked, BakedAlike, OneD, TwoD, bake, bake_alike};
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
@@ -27,9 +30,12 @@ use crate::volume::{Samples, Volume};
 use super::tiles::{self, Radiance};
 use super::{Rendered, Statistics};
 use lattice::Lattice;
+use masked::Masked;
 use medium::Medium;
+use nearest::Nearest;
 use ray::{Brightest, Frame};
 use shade::{Lit, Unlit};
+use shown::Shown;
 use splits::Splits;
 
 pub use ray::Traced;
@@ -102,41 +108,62 @@ fn for_samples<'a, V: Voxel>(
     precision: Precision,
 ) -> Box<dyn Tracer + 'a> {
     let lattice = Lattice::new(volume, samples);
-    let clip = &scene.effects.clip;
-    let frame = Frame { grid: volume.grid(), clip, lattice, tolerance, brightest: Brightest::of(scene) };
+    let shown = Shown::new(volume, scene);
+    let frame =
+        Frame { grid: volume.grid(), clip: &scene.effects.clip, lattice, tolerance, brightest: Brightest::of(scene) };
     let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
     match &scene.model {
         Model::Light => {}
         Model::Value(model) => {
-            let (grid, rescale) = (volume.grid(), volume.rescale());
-            let trace = move |ray: &Ray| models::show_value(&lattice, grid, clip, rescale, model, ray);
+            let trace = move |ray: &Ray| models::show_value(&lattice, &shown, rescale, model, ray);
             return Box::new(Direct { trace, name: format!("exact/{}/value/f64", V::NAME) });
         }
         Model::Surfaces(surfaces) => {
-            let (grid, rescale, shading) = (volume.grid(), volume.rescale(), scene.shading.as_ref());
-            let trace =
-                move |ray: &Ray| Some(models::show_surfaces(&lattice, grid, clip, rescale, surfaces, shading, ray));
+            let trace = move |ray: &Ray| Some(models::show_surfaces(&lattice, &shown, rescale, surfaces, shading, ray));
             return Box::new(Direct { trace, name: format!("exact/{}/surfaces/f64", V::NAME) });
         }
+    }
+    if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
+        let nearest = Nearest::new(classes, volume.grid());
+        return match bake_alike::<f64>(&mask.functions(classes.count(), tf), rescale) {
+            BakedAlike::OneD(media) => {
+                masked::<V, OneD<f64>, OneD<f32>>(frame, shading, Masked { media, nearest }, "tf1d")
+            }
+            BakedAlike::TwoD(media) => {
+                masked::<V, TwoD<f64>, TwoD<f32>>(frame, shading, Masked { media, nearest }, "tf2d")
+            }
+        };
     }
     let double = bake::<f64>(tf, rescale);
     // Across an interval this narrow, the rounding of a value in f32 would cost more than rounding may.
     let too_narrow = double.narrowest() < SHARE_OF_ROUNDING * f64::from(f32::EPSILON) / tolerance;
-    let precision = if too_narrow { Precision::Double } else { precision };
+    let wanted = precision == Precision::Single && !too_narrow;
     let name = |classifier: &str| {
         let lit = if shading.is_some() { "lit" } else { "unlit" };
-        let real = if precision == Precision::Single { "f32" } else { "f64" };
+        let real = if wanted { "f32" } else { "f64" };
         format!("exact/{}/{classifier}/{lit}/{real}", V::NAME)
     };
     match (double, bake::<f32>(tf, rescale)) {
         (Baked::OneD(double), Baked::OneD(single)) => {
-            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf1d") })
+            Box::new(Kernel { frame, shading, double, single: wanted.then_some(single), name: name("tf1d") })
         }
         (Baked::TwoD(double), Baked::TwoD(single)) => {
-            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf2d") })
+            Box::new(Kernel { frame, shading, double, single: wanted.then_some(single), name: name("tf2d") })
         }
         _ => unreachable!("both precisions bake the same transfer function"),
     }
+}
+
+/// The kernel under a mask: in f64 alone, which keeps the number of kernels small. `S` is never there.
+fn masked<'a, V: Voxel, M: Medium<f64> + 'a, S: Medium<f32> + 'a>(
+    frame: Frame<'a, V>,
+    shading: Option<&'a Shading>,
+    double: Masked<'a, M>,
+    classifier: &str,
+) -> Box<dyn Tracer + 'a> {
+    let lit = if shading.is_some() { "lit" } else { "unlit" };
+    let name = format!("exact/{}/{classifier}-masked/{lit}/f64", V::NAME);
+    Box::new(Kernel { frame, shading, double, single: None::<S>, name })
 }
 
 /// f32 is used where an interval between knots is at least this many roundings wide, over the tolerance. On public scans a
@@ -164,8 +191,8 @@ struct Kernel<'a, V, D, S> {
     frame: Frame<'a, V>,
     shading: Option<&'a Shading>,
     double: D,
-    single: S,
-    precision: Precision,
+    /// `None` to trace in f64 throughout.
+    single: Option<S>,
     name: String,
 }
 
@@ -186,8 +213,8 @@ impl<V: Voxel, D: Medium<f64>, S: Medium<f32>> Kernel<'_, V, D, S> {
 
 impl<V: Voxel, D: Medium<f64>, S: Medium<f32>> Tracer for Kernel<'_, V, D, S> {
     fn trace(&self, ray: &Ray) -> Option<Traced> {
-        if self.precision == Precision::Single {
-            let (traced, ill_conditioned) = self.trace_in::<f32, S>(&self.single, ray)?;
+        if let Some(single) = &self.single {
+            let (traced, ill_conditioned) = self.trace_in::<f32, S>(single, ray)?;
             if !ill_conditioned {
                 return Some(traced);
             }

@@ -3,6 +3,7 @@
 
 use super::cells::Segment;
 use super::lattice::{Lattice, along};
+use super::shown::Passed;
 use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, critical_points, crossing, range, sum, value};
 
@@ -43,7 +44,7 @@ pub(super) fn extreme<V: Voxel>(
     best.is_finite().then_some(sign * best)
 }
 
-/// Mean stored value over the segments of a ray, which are `length_mm` long together. The mean of a polynomial is the mean
+/// Mean stored value over the segments of a ray, which are `length_mm` long together, more than 0. The mean of a polynomial is the mean
 /// of its Bernstein coefficients.
 pub(super) fn mean<V: Voxel>(lattice: &Lattice<'_, V>, segments: impl Iterator<Item = Segment>, length_mm: f64) -> f64 {
     let mut total = 0.0;
@@ -64,21 +65,26 @@ pub(super) struct Crossing {
     pub(super) gradient_per_mm: [f64; 3],
 }
 
-/// Calls `visit` for every crossing of one of the stored `levels` along the segments of a ray, front to back, until it
-/// returns false.
+/// Calls `visit` for every crossing of one of the stored `levels` along what a ray passes, front to back, until it returns
+/// false.
 ///
 /// A point is inside a level where the value is at least the level; a crossing is a change from outside to inside or back.
 /// The state is carried along the ray, so that a crossing on the face between two cells counts once. A ray that begins or
-/// ends inside a level, at the border of the volume or where it is clipped, has no crossing there.
+/// ends inside a level, at the border of the volume or where it is clipped, has no crossing there, nor has one that
+/// enters or leaves what is hidden.
 pub(super) fn crossings<V: Voxel>(
     lattice: &Lattice<'_, V>,
-    segments: impl Iterator<Item = Segment>,
+    passed: impl Iterator<Item = Passed>,
     levels: &[f64],
     mut visit: impl FnMut(Crossing) -> bool,
 ) {
     let mut inside: Vec<Option<bool>> = vec![None; levels.len()];
     let mut found: Vec<(f64, usize)> = Vec::new();
-    for segment in segments {
+    for passed in passed {
+        let Passed::Shown(segment) = passed else {
+            inside.fill(None);
+            continue;
+        };
         let corners = lattice.corners::<f64>(segment.cell);
         let [low, high] = range(&corners);
         let settled = |(level, state): (&f64, &Option<bool>)| match state {
@@ -214,7 +220,7 @@ mod tests {
         for ray in rays() {
             let mut found = [0_usize; 2];
             let mut last = f64::MIN;
-            crossings(&lattice(&volume), segments(&volume, &ray), &levels, |c| {
+            crossings(&lattice(&volume), segments(&volume, &ray).map(Passed::Shown), &levels, |c| {
                 assert!(c.at_mm >= last, "front to back");
                 last = c.at_mm;
                 found[c.level] += 1;
@@ -246,7 +252,7 @@ mod tests {
                     direction: (sign * direction).normalize(),
                 };
                 let mut places = Vec::new();
-                crossings(&lattice(&volume), segments(&volume, &ray), &[0.0], |c| {
+                crossings(&lattice(&volume), segments(&volume, &ray).map(Passed::Shown), &[0.0], |c| {
                     places.push(c.at_mm);
                     true
                 });

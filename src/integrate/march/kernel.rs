@@ -1,8 +1,9 @@
 //! The loop over the samples of a ray.
 
+use super::by_place::ByPlace;
 use super::composite::{self, Fold, Light};
 use super::lattice::{Cuts, Stretch};
-use crate::classify::{Classifier, Rgbs};
+use crate::classify::Rgbs;
 use crate::field::{GradientUnits, Pace, Position, Trilinear, Voxel};
 use crate::image::Image;
 use crate::integrate::Frame;
@@ -27,7 +28,7 @@ pub(in super::super) struct Kernel<'a, V, C, S> {
     pub(in super::super) empty_space: Option<EmptySpace>,
 }
 
-impl<V: Voxel, C: Classifier<f32>, S: Shader> Kernel<'_, V, C, S> {
+impl<V: Voxel, C: ByPlace, S: Shader> Kernel<'_, V, C, S> {
     /// Renders every pixel of a frame.
     pub(in super::super) fn render(&self, frame: &Frame<'_>, settings: &March) -> (Image, Tally) {
         let (grid, clip, camera) = (frame.volume.grid(), &frame.scene.effects.clip, &frame.scene.camera);
@@ -101,7 +102,7 @@ impl<V: Voxel, C: Classifier<f32>, S: Shader> Kernel<'_, V, C, S> {
             Some(magnitude) if C::READS_GRADIENT => magnitude.value(&cell),
             _ => 0.0,
         };
-        let optics = self.classifier.classify(self.field.value(&cell), magnitude);
+        let optics = self.classifier.classify_in(&cell, self.field.value(&cell), magnitude);
         // Rounding may leave a trace below 0 at the foot of a ramp.
         let optics = optics.map(|x| if x > 0.0 { x } else { 0.0 });
         if !S::READS_GRADIENT || optics == [0.0; 4] {

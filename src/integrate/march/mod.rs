@@ -4,11 +4,13 @@
 //! evaluates a run of samples at a time; a fold ([`composite`]), chosen by the other settings, composites the run. So
 //! every setting is decided once per frame and none is asked at a sample, without one kernel per combination.
 
+mod by_place;
 mod composite;
 mod jitter;
 mod kernel;
 mod lattice;
 
+pub(super) use by_place::{ByPlace, Masked};
 pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
 
