@@ -12,6 +12,7 @@ mod house;
 mod image;
 mod layering;
 mod march;
+mod mask;
 mod models;
 mod nrrd;
 mod oracle;

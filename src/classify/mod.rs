@@ -76,6 +76,24 @@ pub fn bake<R: Real>(transfer_function: &TransferFunction, rescale: Rescale) -> 
     }
 }
 
+/// Several baked transfer functions, all of the same kind.
+#[derive(Debug, Clone)]
+pub enum BakedAlike<R> {
+    /// Value alone.
+    OneD(Vec<OneD<R>>),
+    /// Value and gradient magnitude.
+    TwoD(Vec<TwoD<R>>),
+}
+
+/// Bakes transfer functions for samples with this rescale: all by value and gradient magnitude if one of them needs it.
+pub fn bake_alike<R: Real>(transfer_functions: &[TransferFunction], rescale: Rescale) -> BakedAlike<R> {
+    if transfer_functions.iter().any(TransferFunction::reads_gradient) {
+        BakedAlike::TwoD(transfer_functions.iter().map(|f| TwoD::bake(f, rescale)).collect())
+    } else {
+        BakedAlike::OneD(transfer_functions.iter().map(|f| OneD::bake(f, rescale)).collect())
+    }
+}
+
 fn rgbs(optics: Optics) -> Rgbs<f64> {
     let [r, g, b] = optics.emission_per_mm;
     [r, g, b, optics.extinction_per_mm]

@@ -22,9 +22,14 @@ impl Macrocells {
     /// Base-2 logarithm of [`BLOCK_CELLS`].
     pub const LOG2_CELLS: u32 = LOG2_BLOCK_CELLS;
 
+    /// Number of blocks along each axis of a lattice of so many voxels.
+    pub fn blocks_of(dims: [usize; 3]) -> [usize; 3] {
+        dims.map(|n| (n - 1).div_ceil(BLOCK_CELLS).max(1))
+    }
+
     /// The ranges of a channel, computed in parallel.
     pub fn new<V: Voxel>(field: &Trilinear<'_, V>) -> Self {
-        let blocks = field.dims.map(|n| (n - 1).div_ceil(BLOCK_CELLS).max(1));
+        let blocks = Macrocells::blocks_of(field.dims);
         let [across, down, _] = blocks;
         let mut ranges = vec![[0.0; 2]; blocks.iter().product()];
         ranges.par_chunks_mut(across * down).enumerate().for_each(|(k, slab)| {

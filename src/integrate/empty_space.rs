@@ -4,7 +4,7 @@
 //! 2019); a ray then leaps over whole neighbourhoods. Samples are on the same lattice with and without: a leap counts
 //! steps, exactly, and what it leaps over would have added 0.
 
-use crate::classify::Classifier;
+use super::march::ByPlace;
 use crate::field::{Macrocells, Pace, Position};
 
 /// Distances to the nearest active block.
@@ -24,15 +24,11 @@ pub(super) struct Leap {
 
 impl EmptySpace {
     /// The blocks in which this transfer function shows something.
-    pub(super) fn new<C: Classifier<f32>>(
-        values: &Macrocells,
-        magnitudes: Option<&Macrocells>,
-        classifier: &C,
-    ) -> Self {
+    pub(super) fn new<C: ByPlace>(values: &Macrocells, magnitudes: Option<&Macrocells>, classifier: &C) -> Self {
         let active: Vec<bool> = (0..values.ranges().len())
             .map(|b| {
                 let magnitude = magnitudes.map_or([0.0; 2], |m| m.ranges()[b]);
-                !classifier.is_empty(widened(values.ranges()[b]), widened(magnitude))
+                !classifier.is_empty_in(b, widened(values.ranges()[b]), widened(magnitude))
             })
             .collect();
         EmptySpace::from_active(values.blocks(), &active)

@@ -111,12 +111,13 @@ struct KernelName {
     method: &'static str,
     voxel: &'static str,
     reads_gradient: bool,
+    suffix: &'static str,
     shader: &'static str,
 }
 
 impl fmt::Display for KernelName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let classifier = if self.reads_gradient { "tf2d" } else { "tf1d" };
-        write!(f, "{}/{}/{classifier}/{}", self.method, self.voxel, self.shader)
+        write!(f, "{}/{}/{classifier}{}/{}", self.method, self.voxel, self.suffix, self.shader)
     }
 }

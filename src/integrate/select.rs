@@ -2,10 +2,10 @@
 
 use super::atmosphere::Atmosphere;
 use super::empty_space::EmptySpace;
-use super::march::{Classified, Kernel};
+use super::march::{ByPlace, Classified, Kernel, Masked};
 use super::shade::{Lit, Shader, Unlit};
 use super::{Frame, KernelName, Rendered, Statistics};
-use crate::classify::{Baked, Classifier, bake};
+use crate::classify::{Baked, BakedAlike, bake, bake_alike};
 use crate::error::Result;
 use crate::field::{GradientUnits, Macrocells, Trilinear, Voxel, gradient_magnitude_per_mm};
 use crate::plan::March;
@@ -20,13 +20,21 @@ pub(super) fn march(frame: &Frame<'_>, settings: &March) -> Result<Rendered> {
 }
 
 fn by_classifier<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V]) -> Result<Rendered> {
+    if let Some((mask, classes)) = frame.scene.effects.mask.as_ref().zip(frame.volume.classes()) {
+        let functions = mask.functions(classes.count(), &frame.scene.transfer_function);
+        let grid = frame.volume.grid();
+        return match bake_alike(&functions, frame.volume.rescale()) {
+            BakedAlike::OneD(all) => by_shader(frame, settings, voxels, &Masked::new(all, classes, grid)),
+            BakedAlike::TwoD(all) => by_shader(frame, settings, voxels, &Masked::new(all, classes, grid)),
+        };
+    }
     match bake(&frame.scene.transfer_function, frame.volume.rescale()) {
         Baked::OneD(classifier) => by_shader(frame, settings, voxels, &classifier),
         Baked::TwoD(classifier) => by_shader(frame, settings, voxels, &classifier),
     }
 }
 
-fn by_shader<V: Voxel, C: Classifier<f32>>(
+fn by_shader<V: Voxel, C: ByPlace>(
     frame: &Frame<'_>,
     settings: &March,
     voxels: &[V],
@@ -43,7 +51,7 @@ fn by_shader<V: Voxel, C: Classifier<f32>>(
 }
 
 /// Computes what this kernel reads, and nothing else, and renders.
-fn run<V: Voxel, C: Classifier<f32>, S: Shader>(
+fn run<V: Voxel, C: ByPlace, S: Shader>(
     frame: &Frame<'_>,
     settings: &March,
     voxels: &[V],
@@ -61,7 +69,13 @@ fn run<V: Voxel, C: Classifier<f32>, S: Shader>(
     });
     let medium = Classified { field, magnitude, units, classifier, shader };
     let (image, tally) = Kernel { medium: &medium, empty_space }.render(frame, settings);
-    let name = KernelName { method: "march", voxel: V::NAME, reads_gradient: C::READS_GRADIENT, shader: S::NAME };
+    let name = KernelName {
+        method: "march",
+        voxel: V::NAME,
+        reads_gradient: C::READS_GRADIENT,
+        suffix: C::SUFFIX,
+        shader: S::NAME,
+    };
     let statistics =
         Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel: name.to_string() };
     Ok(Rendered { image, statistics })

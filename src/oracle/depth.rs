@@ -11,11 +11,12 @@ const NODES: usize = 4;
 
 /// `∫ σ ds` over a ray, or `None` if it misses the volume.
 pub(super) fn optical_depth(oracle: &Oracle<'_>, ray: &Ray) -> Option<f64> {
-    let (patches, gauss) = (&oracle.patches, Gauss::<NODES>::new());
+    let gauss = Gauss::<NODES>::new();
     let path = oracle.path(ray, 0.0, f64::INFINITY)?;
     let mut splits = Splits::default();
     let mut depth = 0.0;
-    for passage in path.passages() {
+    for (passage, patches) in path.passages().flat_map(|passage| oracle.functions.along(passage)) {
+        let Some(patches) = patches else { continue };
         let Some(fields) = Fields::new(oracle.volume, patches, false, &passage) else { continue };
         splits.restart();
         fields.add_knots(patches, &mut splits);

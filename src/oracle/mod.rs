@@ -24,6 +24,7 @@ mod fields;
 mod light;
 mod lit_passage;
 mod lit_piece;
+mod masked;
 mod models;
 mod occlusion;
 mod panel;
@@ -46,6 +47,7 @@ use fields::Fields;
 use light::Light;
 use lit_passage::LitPassage;
 use lit_piece::LitPiece;
+use masked::Functions;
 use occlusion::{Lights, Occlusion};
 use panel::PanelRule;
 use patches::Patches;
@@ -58,7 +60,7 @@ use splits::Splits;
 pub struct Oracle<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
-    patches: Patches,
+    functions: Functions<'a>,
     cubic: PanelRule<4>,
     sextic: PanelRule<7>,
     collocation: Collocation,
@@ -75,7 +77,7 @@ impl<'a> Oracle<'a> {
         Oracle {
             volume,
             scene,
-            patches: Patches::new(&scene.transfer_function),
+            functions: Functions::new(volume, scene),
             cubic: PanelRule::new(),
             sextic: PanelRule::new(),
             collocation: Collocation::new(),
@@ -162,23 +164,23 @@ impl<'a> Oracle<'a> {
         let mut light = Light::default();
         let mut here_mm = from_mm.max(0.0);
         let path = self.path(ray, from_mm, to_mm);
-        self.walk(path, self.scene.shading.is_some(), &mut light, |passage, fields, splits, light| {
+        self.walk(path, self.scene.shading.is_some(), &mut light, |passage, seen, splits, light| {
             add_haze(haze, passage.from_mm - here_mm, light);
             here_mm = passage.from_mm + passage.length_mm;
-            let Some(fields) = fields else { return add_haze(haze, passage.length_mm, light) };
+            let Some((fields, patches)) = seen else { return add_haze(haze, passage.length_mm, light) };
             let lit = LitPassage::new(self, ray, shaded.as_ref(), passage);
-            fields.add_knots(&self.patches, splits);
+            fields.add_knots(patches, splits);
             lit.add_bends(splits);
             if let (Some(shaded), Some(gradient)) = (&shaded, &fields.gradient) {
                 shaded.add_bends(gradient, splits);
             }
             for [from, to] in splits.pieces() {
                 let length_mm = (to - from) * passage.length_mm;
-                let Some(piece) = fields.piece(&self.patches, [from, to]) else {
+                let Some(piece) = fields.piece(patches, [from, to]) else {
                     add_haze(haze, length_mm, light);
                     continue;
                 };
-                let integrand = LitPiece { fields, patches: &self.patches, piece, passage: &lit };
+                let integrand = LitPiece { fields, patches, piece, passage: &lit };
                 self.collocation.integrate(&integrand, Stretch { from, width: to - from, length_mm }, light);
             }
         });
@@ -189,15 +191,15 @@ impl<'a> Oracle<'a> {
 
     fn by_panels(&self, path: Option<Path>) -> Segment {
         let mut light = Light::default();
-        self.walk(path, false, &mut light, |passage, fields, splits, light| {
-            let Some(fields) = fields else { return };
-            fields.add_knots(&self.patches, splits);
+        self.walk(path, false, &mut light, |passage, seen, splits, light| {
+            let Some((fields, patches)) = seen else { return };
+            fields.add_knots(patches, splits);
             for ends in splits.pieces() {
-                let Some(piece) = fields.piece(&self.patches, ends) else { continue };
+                let Some(piece) = fields.piece(patches, ends) else { continue };
                 let length_mm = (piece.to - piece.from) * passage.length_mm;
-                match fields.sextic_panel(&self.patches, &piece, length_mm) {
+                match fields.sextic_panel(patches, &piece, length_mm) {
                     Some(panel) => self.sextic.integrate(&panel, light),
-                    None => self.cubic.integrate(&fields.cubic_panel(&self.patches, &piece, length_mm), light),
+                    None => self.cubic.integrate(&fields.cubic_panel(patches, &piece, length_mm), light),
                 }
             }
         });
@@ -210,20 +212,22 @@ impl<'a> Oracle<'a> {
         Path::new(self.volume.grid(), ray, from_mm.max(first_mm), to_mm.min(last_mm))
     }
 
-    /// Gathers light cell by cell, from the eye on; `gather` is given each passage with the fields along it, or `None` where
-    /// the transfer function shows nothing.
+    /// Gathers light cell by cell, from the eye on; `gather` is given each passage with the fields along it and the transfer
+    /// function there, or `None` where that shows nothing.
     fn walk(
         &self,
         path: Option<Path>,
         shaded: bool,
         light: &mut Light,
-        mut gather: impl FnMut(&Passage, Option<&Fields>, &mut Splits, &mut Light),
+        mut gather: impl FnMut(&Passage, Option<(&Fields, &Patches)>, &mut Splits, &mut Light),
     ) {
         let mut splits = Splits::default();
         for passage in path.iter().flat_map(Path::passages) {
-            splits.restart();
-            let fields = Fields::new(self.volume, &self.patches, shaded, &passage);
-            gather(&passage, fields.as_ref(), &mut splits, light);
+            for (passage, patches) in self.functions.along(passage) {
+                splits.restart();
+                let fields = patches.and_then(|p| Some((Fields::new(self.volume, p, shaded, &passage)?, p)));
+                gather(&passage, fields.as_ref().map(|(fields, patches)| (fields, *patches)), &mut splits, light);
+            }
             if light.is_opaque() {
                 break;
             }

@@ -20,7 +20,7 @@ pub(super) fn number(oracle: &Oracle<'_>, model: &ValueModel, ray: &Ray) -> Opti
     }
     // Between neighbours of these the value is monotone.
     let (mut turns, mut total, mut length_mm) = (Vec::new(), 0.0, 0.0);
-    for (passage, value) in passages(oracle, ray) {
+    for (passage, value) in passages(oracle, ray).flatten() {
         for [from, to] in critical_points(&value.0).stretches() {
             turns.extend([value.at(from), value.at(to)]);
         }
@@ -51,7 +51,12 @@ fn local_maximum(turns: &[f64], threshold: f64, fall: f64) -> Option<f64> {
 pub(super) fn surfaces(oracle: &Oracle<'_>, surfaces: &[Surface], ray: &Ray) -> [f64; 4] {
     let (mut rgb, mut transmittance) = ([0.0; 3], 1.0);
     let mut inside: Vec<Option<bool>> = vec![None; surfaces.len()];
-    for (passage, value) in passages(oracle, ray) {
+    for shown in passages(oracle, ray) {
+        let Some((passage, value)) = shown else {
+            // What is hidden has no inside, and its border is no crossing.
+            inside.fill(None);
+            continue;
+        };
         let mut found: Vec<(f64, usize)> = Vec::new();
         for (n, surface) in surfaces.iter().enumerate() {
             let is_inside = |t: f64| value.at(t) >= surface.value;
@@ -82,10 +87,13 @@ pub(super) fn surfaces(oracle: &Oracle<'_>, surfaces: &[Surface], ray: &Ray) -> 
     [r, g, b, 1.0 - transmittance]
 }
 
-fn passages<'a>(oracle: &'a Oracle<'_>, ray: &Ray) -> impl Iterator<Item = (Passage, Cubic)> + 'a {
+/// The values along the passages of a ray; `None` for a hidden one.
+fn passages<'a>(oracle: &'a Oracle<'_>, ray: &Ray) -> impl Iterator<Item = Option<(Passage, Cubic)>> + 'a {
     let path = oracle.path(ray, 0.0, f64::INFINITY);
-    path.into_iter().flat_map(|path| path.passages().collect::<Vec<_>>()).map(|passage| {
+    let passages = path.into_iter().flat_map(|path| path.passages().collect::<Vec<_>>());
+    passages.flat_map(|passage| oracle.functions.along(passage)).map(|(passage, patches)| {
+        patches?;
         let values = Cell::new(oracle.volume, passage.cell).values();
-        (passage, along(&values, &passage))
+        Some((passage, along(&values, &passage)))
     })
 }

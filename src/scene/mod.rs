@@ -13,7 +13,9 @@ mod model;
 mod shading;
 
 pub use camera::{Camera, Projection, Ray};
-pub use effects::{ClassifyAt, Clip, DepthCue, Effects, Fog, FogLaw, HalfSpace, Haze, Scattering, Shadows};
+pub use effects::{
+    Class, ClassifyAt, Clip, DepthCue, Effects, Fog, FogLaw, HalfSpace, Haze, Mask, Scattering, Shadows,
+};
 pub use model::{Model, Surface, ValueModel, ValueOf};
 pub use shading::{Light, Shading};
 
@@ -34,6 +36,18 @@ pub struct Scene {
     pub background: Background,
     /// What it asks for beyond that.
     pub effects: Effects,
+}
+
+impl Scene {
+    /// The scene's transfer function, and those that classes of voxels have in its place.
+    pub fn transfer_functions(&self) -> impl Iterator<Item = &TransferFunction> {
+        let classes = self.effects.mask.iter().flat_map(|mask| &mask.classes);
+        let own = classes.filter_map(|class| match class {
+            Class::Own(function) => Some(function),
+            Class::Shown | Class::Hidden => None,
+        });
+        std::iter::once(&self.transfer_function).chain(own)
+    }
 }
 
 /// The light behind the volume.

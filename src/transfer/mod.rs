@@ -111,6 +111,12 @@ impl TransferFunction {
         &self.terms
     }
 
+    /// On the same domain, 0 everywhere.
+    #[must_use]
+    pub fn without_terms(&self) -> Self {
+        TransferFunction { terms: Vec::new(), ..*self }
+    }
+
     /// True if some term depends on the gradient magnitude; if not, nobody need compute it.
     pub fn reads_gradient(&self) -> bool {
         self.terms.iter().any(|t| t.weight.is_some())

@@ -8,10 +8,12 @@
 //! The value of a voxel is `slope · stored + intercept`, in HU for CT ([`Rescale`]). Samples stay at 16 bits in memory
 //! wherever the source has no more ([`Samples`]).
 
+mod classes;
 mod digest;
 mod grid;
 mod samples;
 
+pub use classes::Classes;
 pub use grid::Grid;
 pub use samples::{Rescale, Samples};
 
@@ -33,6 +35,7 @@ pub struct Volume {
     samples: Samples,
     rescale: Rescale,
     quantity: Quantity,
+    classes: Option<Classes>,
 }
 
 impl Volume {
@@ -60,7 +63,7 @@ impl Volume {
                 .element(format!("voxel ({i}, {j}, {k})"))
                 .found(values[index].to_string()));
         }
-        Ok(Volume { grid, samples, rescale, quantity })
+        Ok(Volume { grid, samples, rescale, quantity, classes: None })
     }
 
     /// Lattice and affine.

@@ -30,6 +30,20 @@ pub(super) struct Segment {
     pub(super) exit_mm: f64,
 }
 
+impl Segment {
+    /// The part between two places in `[0, 1]` of the segment.
+    pub(super) fn part(&self, [begin, end]: [f64; 2]) -> Segment {
+        let place = |u: f64| std::array::from_fn(|a| self.from[a] + u * (self.to[a] - self.from[a]));
+        Segment {
+            cell: self.cell,
+            from: place(begin),
+            to: place(end),
+            length_mm: (end - begin) * self.length_mm,
+            exit_mm: self.exit_mm - (1.0 - end) * self.length_mm,
+        }
+    }
+}
+
 impl IndexRay {
     /// The part of a ray inside the domain of a grid and not clipped away, or `None` if there is none.
     pub(super) fn new(ray: &Ray, grid: &Grid, clip: &Clip) -> Option<Self> {

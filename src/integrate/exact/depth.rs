@@ -5,6 +5,7 @@ use crate::field::Voxel;
 use crate::math::bernstein::{elevate, product, restrict, sum};
 
 use super::cells::Segment;
+use super::masked::Masked;
 use super::medium::{Classified, Medium, ValueAndMagnitude, within_interval};
 use super::splits::Splits;
 
@@ -35,6 +36,13 @@ impl<V: Voxel> Extinction for Classified<'_, V, TwoD<f64>> {
             + by_value[EXTINCTION] * mean(&elevate(&dv))
             + by_gradient[EXTINCTION] * mean(&elevate(&dg))
             + by_both[EXTINCTION] * mean(&product(&dv, &dg))
+    }
+}
+
+impl<M: Extinction> Extinction for Masked<'_, M> {
+    fn mean_per_mm(&self, fields: &Self::Fields, part: [f64; 2]) -> f64 {
+        let class = fields.class_at(0.5 * (part[0] + part[1]));
+        self.media[class].mean_per_mm(fields.within_class(), part)
     }
 }
 

@@ -11,31 +11,38 @@ mod budget;
 mod cells;
 mod depth;
 mod lattice;
+mod masked;
 mod medium;
 mod models;
+mod nearest;
 mod peak;
 mod piece;
 mod ray;
 mod shade;
+mod shown;
 mod splits;
 mod toward_light;
 mod values;
 
-use crate::classify::{Baked, bake};
+use crate::classify::{Baked, BakedAlike, OneD, TwoD, bake, bake_alike};
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::plan::Exact;
-use crate::scene::{Model, Ray, Scene, Shading, ValueModel};
+use crate::scene::{Model, Ray, Scene, Shading};
 use crate::volume::{Samples, Volume};
 
 use super::light_volumes::LightVolumes;
 use super::tiles::{self, Radiance};
 use super::{Rendered, Statistics};
+use depth::Extinction;
 use lattice::Lattice;
+use masked::Masked;
 use medium::{Classified, Medium};
+use nearest::Nearest;
 use ray::{Brightest, Frame};
 use shade::{Lit, Unlit};
+use shown::Shown;
 use splits::Splits;
 
 pub use ray::Traced;
@@ -109,84 +116,85 @@ fn for_samples<'a, V: Voxel>(
     precision: Precision,
 ) -> Box<dyn Tracer + 'a> {
     let lattice = Lattice::new(volume, samples);
-    let clip = &scene.effects.clip;
-    let frame = Frame { grid: volume.grid(), clip, tolerance, brightest: Brightest::of(scene) };
-    let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
+    let shown = Shown::new(volume, scene);
+    let rescale = volume.rescale();
     match &scene.model {
-        Model::Light => {}
-        Model::Value(model) if model.of.reads_transfer_function() => {
-            return for_optical_depth(lattice, volume, scene, model);
-        }
-        Model::Value(model) => {
-            let (grid, rescale) = (volume.grid(), volume.rescale());
-            let trace = move |ray: &Ray| models::show_value(&lattice, grid, clip, rescale, model, ray);
+        Model::Value(model) if !model.of.reads_transfer_function() => {
+            let trace = move |ray: &Ray| models::show_value(&lattice, &shown, rescale, model, ray);
             return Box::new(Direct { trace, name: format!("exact/{}/{}/f64", V::NAME, model.of.name()) });
         }
         Model::Surfaces(surfaces) => {
-            let (grid, rescale) = (volume.grid(), volume.rescale());
-            let trace = move |ray: &Ray| Some(models::show_surfaces(&lattice, grid, rescale, surfaces, scene, ray));
+            let trace = move |ray: &Ray| Some(models::show_surfaces(&lattice, &shown, rescale, surfaces, scene, ray));
             return Box::new(Direct { trace, name: format!("exact/{}/surfaces/f64", V::NAME) });
         }
+        Model::Light | Model::Value(_) => {}
     }
-    let double = bake::<f64>(tf, rescale);
-    if scene.effects.change_light() {
-        let name = |classifier: &str| format!("exact/{}/{classifier}/atmosphere/f64", V::NAME);
-        let lights = LightVolumes::new(volume, scene);
-        return match double {
-            Baked::OneD(classifier) => {
-                let medium = classified(lattice, classifier);
-                Box::new(atmosphere::Kernel { frame, scene, medium, lights, name: name("tf1d") })
+    let tf = &scene.transfer_function;
+    let of = Of { volume, scene, tolerance, voxel: V::NAME };
+    if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
+        let nearest = Nearest::new(classes, volume.grid());
+        // In f64 alone, which keeps the number of kernels small.
+        return match bake_alike::<f64>(&mask.functions(classes.count(), tf), rescale) {
+            BakedAlike::OneD(all) => {
+                let media = all.into_iter().map(|one| Classified { lattice, classifier: one }).collect();
+                of.tracer("tf1d-masked", Masked { media, nearest }, None::<Classified<'a, V, OneD<f32>>>)
             }
-            Baked::TwoD(classifier) => {
-                let medium = classified(lattice, classifier);
-                Box::new(atmosphere::Kernel { frame, scene, medium, lights, name: name("tf2d") })
+            BakedAlike::TwoD(all) => {
+                let media = all.into_iter().map(|one| Classified { lattice, classifier: one }).collect();
+                of.tracer("tf2d-masked", Masked { media, nearest }, None::<Classified<'a, V, TwoD<f32>>>)
             }
         };
     }
+    let double = bake::<f64>(tf, rescale);
     // Across an interval this narrow, the rounding of a value in f32 would cost more than rounding may.
     let too_narrow = double.narrowest() < SHARE_OF_ROUNDING * f64::from(f32::EPSILON) / tolerance;
-    let precision = if too_narrow { Precision::Double } else { precision };
-    let name = |classifier: &str| {
-        let lit = if shading.is_some() { "lit" } else { "unlit" };
-        let real = if precision == Precision::Single { "f32" } else { "f64" };
-        format!("exact/{}/{classifier}/{lit}/{real}", V::NAME)
-    };
+    let single = precision == Precision::Single && !too_narrow;
     match (double, bake::<f32>(tf, rescale)) {
-        (Baked::OneD(double), Baked::OneD(single)) => {
-            let (double, single) = (classified(lattice, double), classified(lattice, single));
-            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf1d") })
+        (Baked::OneD(double), Baked::OneD(other)) => {
+            let other = single.then_some(Classified { lattice, classifier: other });
+            of.tracer("tf1d", Classified { lattice, classifier: double }, other)
         }
-        (Baked::TwoD(double), Baked::TwoD(single)) => {
-            let (double, single) = (classified(lattice, double), classified(lattice, single));
-            Box::new(Kernel { frame, shading, double, single, precision, name: name("tf2d") })
+        (Baked::TwoD(double), Baked::TwoD(other)) => {
+            let other = single.then_some(Classified { lattice, classifier: other });
+            of.tracer("tf2d", Classified { lattice, classifier: double }, other)
         }
         _ => unreachable!("both precisions bake the same transfer function"),
     }
 }
 
-fn classified<V, C>(lattice: Lattice<'_, V>, classifier: C) -> Classified<'_, V, C> {
-    Classified { lattice, classifier }
-}
-
-fn for_optical_depth<'a, V: Voxel>(
-    lattice: Lattice<'a, V>,
+/// What a kernel is for.
+struct Of<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
-    model: &'a ValueModel,
-) -> Box<dyn Tracer + 'a> {
-    let (grid, clip) = (volume.grid(), &scene.effects.clip);
-    let name = |classifier: &str| format!("exact/{}/{classifier}/{}/f64", V::NAME, model.of.name());
-    match bake::<f64>(&scene.transfer_function, volume.rescale()) {
-        Baked::OneD(classifier) => {
-            let medium = classified(lattice, classifier);
-            let trace = move |ray: &Ray| models::show_depth(&medium, grid, clip, model, ray);
-            Box::new(Direct { trace, name: name("tf1d") })
+    tolerance: f64,
+    voxel: &'static str,
+}
+
+impl<'a> Of<'a> {
+    /// The kernel for a medium: by its effects of light, its shading, or the optical depth alone. `single` is the same medium
+    /// in f32, where that is enough; effects and numbers are computed in f64 alone.
+    fn tracer<D: Extinction + 'a, S: Medium<f32> + 'a>(
+        self,
+        classifier: &str,
+        double: D,
+        single: Option<S>,
+    ) -> Box<dyn Tracer + 'a> {
+        let Of { volume, scene, tolerance, voxel } = self;
+        let (grid, clip) = (volume.grid(), &scene.effects.clip);
+        let name = |what: &str, real: &str| format!("exact/{voxel}/{classifier}/{what}/{real}");
+        if let Model::Value(model) = &scene.model {
+            let trace = move |ray: &Ray| models::show_depth(&double, grid, clip, model, ray);
+            return Box::new(Direct { trace, name: name(model.of.name(), "f64") });
         }
-        Baked::TwoD(classifier) => {
-            let medium = classified(lattice, classifier);
-            let trace = move |ray: &Ray| models::show_depth(&medium, grid, clip, model, ray);
-            Box::new(Direct { trace, name: name("tf2d") })
+        let frame = Frame { grid, clip, tolerance, brightest: Brightest::of(scene) };
+        if scene.effects.change_light() {
+            let lights = LightVolumes::new(volume, scene);
+            let name = name("atmosphere", "f64");
+            return Box::new(atmosphere::Kernel { frame, scene, medium: double, lights, name });
         }
+        let shading = scene.shading.as_ref();
+        let name = name(if shading.is_some() { "lit" } else { "unlit" }, if single.is_some() { "f32" } else { "f64" });
+        Box::new(Kernel { frame, shading, double, single, name })
     }
 }
 
@@ -215,8 +223,8 @@ struct Kernel<'a, D, S> {
     frame: Frame<'a>,
     shading: Option<&'a Shading>,
     double: D,
-    single: S,
-    precision: Precision,
+    /// `None` to trace in f64 throughout.
+    single: Option<S>,
     name: String,
 }
 
@@ -237,8 +245,8 @@ impl<D: Medium<f64>, S: Medium<f32>> Kernel<'_, D, S> {
 
 impl<D: Medium<f64>, S: Medium<f32>> Tracer for Kernel<'_, D, S> {
     fn trace(&self, ray: &Ray) -> Option<Traced> {
-        if self.precision == Precision::Single {
-            let (traced, ill_conditioned) = self.trace_in::<f32, S>(&self.single, ray)?;
+        if let Some(single) = &self.single {
+            let (traced, ill_conditioned) = self.trace_in::<f32, S>(single, ray)?;
             if !ill_conditioned {
                 return Some(traced);
             }

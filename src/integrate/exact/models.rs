@@ -5,11 +5,12 @@ use crate::scene::{Clip, Ray, Scene, Surface, ValueModel, ValueOf};
 use crate::volume::{Grid, Rescale};
 
 use super::Traced;
-use super::cells::IndexRay;
+use super::cells::{IndexRay, Segment};
 use super::depth::{Extinction, optical_depth};
 use super::lattice::Lattice;
 use super::peak::Peak;
-use super::values::{Extreme, crossings, extreme, integral};
+use super::shown::{Passed, Shown};
+use super::values::{Crossing, Extreme, crossings, extreme, integral};
 
 /// Rounding of the f64 arithmetic, far above what it amounts to.
 const ROUNDING: f64 = 1e-9;
@@ -17,20 +18,40 @@ const ROUNDING: f64 = 1e-9;
 /// Shows one number of the values along a ray; the optical depth is shown by [`show_depth`].
 pub(super) fn show_value<V: Voxel>(
     lattice: &Lattice<'_, V>,
-    grid: &Grid,
-    clip: &Clip,
+    shown: &Shown<'_>,
     rescale: Rescale,
     model: &ValueModel,
     ray: &Ray,
 ) -> Option<Traced> {
-    let inside = IndexRay::new(ray, grid, clip)?;
-    let segments = inside.segments(grid);
+    let inside = shown.inside(ray)?;
+    let segments = || inside.segments(shown.grid);
+    let number = match shown.hiding {
+        None => number(lattice, segments(), inside.length_mm(), rescale, model)?,
+        Some(hiding) => {
+            let left = || hiding.pass(segments()).filter_map(Passed::shown);
+            number(lattice, left(), left().map(|s| s.length_mm).sum(), rescale, model)?
+        }
+    };
+    Some(in_grey(model, number))
+}
+
+/// A number of the values along segments, which are `length_mm` long together; `None` if that is 0.
+fn number<V: Voxel>(
+    lattice: &Lattice<'_, V>,
+    segments: impl Iterator<Item = Segment>,
+    length_mm: f64,
+    rescale: Rescale,
+    model: &ValueModel,
+) -> Option<f64> {
+    if length_mm <= 0.0 {
+        return None;
+    }
     // A falling rescale turns the largest value into the smallest stored number.
     let (upwards, downwards) = match rescale.slope < 0.0 {
         false => (Extreme::Largest, Extreme::Smallest),
         true => (Extreme::Smallest, Extreme::Largest),
     };
-    let number = match model.of {
+    Some(match model.of {
         ValueOf::Maximum => rescale.value(extreme(lattice, segments, upwards)?),
         ValueOf::Minimum => rescale.value(extreme(lattice, segments, downwards)?),
         ValueOf::LocalMaximum { threshold } => {
@@ -41,11 +62,10 @@ pub(super) fn show_value<V: Voxel>(
             };
             rescale.value(peak.first(lattice, segments)?)
         }
-        ValueOf::Mean => rescale.value(integral(lattice, segments) / inside.length_mm()),
-        ValueOf::Sum => rescale.slope * integral(lattice, segments) + rescale.intercept * inside.length_mm(),
+        ValueOf::Mean => rescale.value(integral(lattice, segments) / length_mm),
+        ValueOf::Sum => rescale.slope * integral(lattice, segments) + rescale.intercept * length_mm,
         ValueOf::OpticalDepth => unreachable!("the optical depth reads a transfer function"),
-    };
-    Some(shown(model, number))
+    })
 }
 
 /// Shows the optical depth along a ray.
@@ -56,10 +76,10 @@ pub(super) fn show_depth<M: Extinction>(
     model: &ValueModel,
     ray: &Ray,
 ) -> Option<Traced> {
-    Some(shown(model, optical_depth(medium, IndexRay::new(ray, grid, clip)?.segments(grid))))
+    Some(in_grey(model, optical_depth(medium, IndexRay::new(ray, grid, clip)?.segments(grid))))
 }
 
-fn shown(model: &ValueModel, number: f64) -> Traced {
+fn in_grey(model: &ValueModel, number: f64) -> Traced {
     let light = model.light(number);
     Traced { radiance: [light; 3], transmittance: 0.0, opacity: 1.0, bound: ROUNDING, pieces: 1 }
 }
@@ -67,7 +87,7 @@ fn shown(model: &ValueModel, number: f64) -> Traced {
 /// Composites the level surfaces along a ray, front to back.
 pub(super) fn show_surfaces<V: Voxel>(
     lattice: &Lattice<'_, V>,
-    grid: &Grid,
+    shown: &Shown<'_>,
     rescale: Rescale,
     surfaces: &[Surface],
     scene: &Scene,
@@ -75,8 +95,7 @@ pub(super) fn show_surfaces<V: Voxel>(
 ) -> Traced {
     let levels: Vec<f64> = surfaces.iter().map(|s| rescale.stored(s.value)).collect();
     let mut traced = Traced { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, bound: ROUNDING, pieces: 0 };
-    let segments = IndexRay::new(ray, grid, &scene.effects.clip).into_iter().flat_map(|inside| inside.segments(grid));
-    crossings(lattice, segments, rescale.slope.signum(), &levels, |crossing| {
+    let composite = |crossing: Crossing| {
         let Surface { opacity, color, .. } = surfaces[crossing.level];
         // Between surfaces nothing absorbs, so that they cast no shadows.
         let (reflected, added) = scene.factors(ray, crossing.at_mm, crossing.gradient_per_mm.into(), |_| 1.0);
@@ -87,6 +106,12 @@ pub(super) fn show_surfaces<V: Voxel>(
         traced.transmittance -= traced.transmittance * opacity;
         traced.pieces += 1;
         traced.transmittance > 0.0
-    });
+    };
+    let segments = shown.inside(ray).into_iter().flat_map(|inside| inside.segments(shown.grid));
+    let sign = rescale.slope.signum();
+    match shown.hiding {
+        None => crossings(lattice, segments.map(Passed::Shown), sign, &levels, composite),
+        Some(hiding) => crossings(lattice, hiding.pass(segments), sign, &levels, composite),
+    }
     traced
 }

@@ -2,7 +2,7 @@
 
 use crate::math::Real;
 use crate::scene::{Clip, Ray, Scene};
-use crate::transfer::Side;
+use crate::transfer::{Optics, Side, TransferFunction};
 use crate::volume::Grid;
 
 use super::budget::Budget;
@@ -59,21 +59,13 @@ pub(super) struct Brightest {
 impl Brightest {
     /// Bounds for a scene. Between knots σ and q are bilinear, so what holds at the corners of a patch holds inside it.
     pub(super) fn of(scene: &Scene) -> Self {
-        let tf = &scene.transfer_function;
         let (mut color, mut emission, mut extinction) = (0.0f64, 0.0f64, 0.0f64);
-        for v in tf.value_knots() {
-            for g in tf.gradient_knots() {
-                for (v_side, g_side) in
-                    [Side::Left, Side::Right].into_iter().flat_map(|v| [(v, Side::Left), (v, Side::Right)])
-                {
-                    let optics = tf.evaluate_side(v, v_side, g, g_side);
-                    let q = optics.emission_per_mm.into_iter().fold(0.0, f64::max);
-                    emission = emission.max(q);
-                    extinction = extinction.max(optics.extinction_per_mm);
-                    if q > 0.0 {
-                        color = color.max(q / optics.extinction_per_mm);
-                    }
-                }
+        for optics in scene.transfer_functions().flat_map(at_corners) {
+            let q = optics.emission_per_mm.into_iter().fold(0.0, f64::max);
+            emission = emission.max(q);
+            extinction = extinction.max(optics.extinction_per_mm);
+            if q > 0.0 {
+                color = color.max(q / optics.extinction_per_mm);
             }
         }
         let (reflected, highlight) = scene.shading.as_ref().map_or((1.0, 0.0), |s| s.largest_factors());
@@ -121,6 +113,15 @@ impl Brightest {
     fn of_rest(&self, transmittance: f64, rest_mm: f64) -> f64 {
         transmittance * self.per_absorbed.min(self.per_mm * rest_mm).max(1.0)
     }
+}
+
+/// What a transfer function is at the corners of its patches, from all sides.
+fn at_corners(tf: &TransferFunction) -> impl Iterator<Item = Optics> {
+    let sides =
+        [(Side::Left, Side::Left), (Side::Left, Side::Right), (Side::Right, Side::Left), (Side::Right, Side::Right)];
+    let gradients = tf.gradient_knots();
+    let corners = tf.value_knots().into_iter().flat_map(move |v| gradients.clone().into_iter().map(move |g| (v, g)));
+    corners.flat_map(move |(v, g)| sides.map(|(v_side, g_side)| tf.evaluate_side(v, v_side, g, g_side)))
 }
 
 impl Frame<'_> {

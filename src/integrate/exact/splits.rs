@@ -27,6 +27,11 @@ impl<R: Real> Splits<R> {
         self.harm = harm;
     }
 
+    /// Adds a place.
+    pub(super) fn add(&mut self, position: R) {
+        self.positions.push(position);
+    }
+
     /// Adds the places where a cubic takes one of the levels of an axis, as [`Splits::cut_at`], and notes where rounding
     /// might matter: near a jump, a cubic that is nearly flat crosses at an uncertain place, or not at all.
     #[inline]

@@ -4,14 +4,16 @@
 
 use glam::DVec3;
 
-use crate::classify::{Baked, bake};
+use crate::classify::{Baked, BakedAlike, bake, bake_alike};
 use crate::field::Voxel;
 use crate::scene::{Clip, Ray, Scene};
 use crate::volume::{Grid, Samples, Volume};
 
 use super::cells::IndexRay;
 use super::lattice::Lattice;
+use super::masked::Masked;
 use super::medium::{Classified, Medium};
+use super::nearest::Nearest;
 use super::shade::Unlit;
 use super::splits::Splits;
 
@@ -32,6 +34,21 @@ pub(in super::super) fn toward_light<'a>(volume: &'a Volume, scene: &'a Scene) -
 fn for_samples<'a, V: Voxel>(volume: &'a Volume, scene: &'a Scene, samples: &'a [V]) -> TowardLight<'a> {
     let lattice = Lattice::new(volume, samples);
     let occluder = Occluder { grid: volume.grid(), clip: &scene.effects.clip };
+    if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
+        let nearest = Nearest::new(classes, volume.grid());
+        return match bake_alike::<f64>(&mask.functions(classes.count(), &scene.transfer_function), volume.rescale()) {
+            BakedAlike::OneD(all) => {
+                let media = all.into_iter().map(|classifier| Classified { lattice, classifier }).collect();
+                let medium = Masked { media, nearest };
+                Box::new(move |voxel, towards| occluder.transmittance(&medium, voxel, towards))
+            }
+            BakedAlike::TwoD(all) => {
+                let media = all.into_iter().map(|classifier| Classified { lattice, classifier }).collect();
+                let medium = Masked { media, nearest };
+                Box::new(move |voxel, towards| occluder.transmittance(&medium, voxel, towards))
+            }
+        };
+    }
     match bake::<f64>(&scene.transfer_function, volume.rescale()) {
         Baked::OneD(classifier) => {
             let medium = Classified { lattice, classifier };

@@ -3,6 +3,7 @@
 
 use super::cells::Segment;
 use super::lattice::{Lattice, along};
+use super::shown::Passed;
 use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, critical_points, crossing, range, sum, value};
 
@@ -64,16 +65,16 @@ pub(super) struct Crossing {
     pub(super) gradient_per_mm: [f64; 3],
 }
 
-/// Calls `visit` for every crossing of one of the stored `levels` along the segments of a ray, front to back, until it
-/// returns false.
+/// Calls `visit` for every crossing of one of the stored `levels` along what a ray passes, front to back, until it returns
+/// false.
 ///
 /// A point is inside a level where the value is at least the level; a crossing is a change from outside to inside or back.
 /// The state is carried along the ray, so that a crossing on the face between two cells counts once. A ray that begins or
-/// ends inside a level, at the border of the volume or where it is clipped, has no crossing there. `sign` is -1 where
-/// values fall as stored numbers rise.
+/// ends inside a level, at the border of the volume or where it is clipped, has no crossing there, nor has one that enters
+/// or leaves what is hidden. `sign` is -1 where values fall as stored numbers rise.
 pub(super) fn crossings<V: Voxel>(
     lattice: &Lattice<'_, V>,
-    segments: impl Iterator<Item = Segment>,
+    passed: impl Iterator<Item = Passed>,
     sign: f64,
     levels: &[f64],
     mut visit: impl FnMut(Crossing) -> bool,
@@ -81,7 +82,11 @@ pub(super) fn crossings<V: Voxel>(
     let levels: Vec<f64> = levels.iter().map(|level| sign * level).collect();
     let mut inside: Vec<Option<bool>> = vec![None; levels.len()];
     let mut found: Vec<(f64, usize)> = Vec::new();
-    for segment in segments {
+    for passed in passed {
+        let Passed::Shown(segment) = passed else {
+            inside.fill(None);
+            continue;
+        };
         let corners = lattice.corners::<f64>(segment.cell).map(|v| sign * v);
         let [low, high] = range(&corners);
         let settled = |(level, state): (&f64, &Option<bool>)| match state {
@@ -217,7 +222,7 @@ mod tests {
         for ray in rays() {
             let mut found = [0_usize; 2];
             let mut last = f64::MIN;
-            crossings(&lattice(&volume), segments(&volume, &ray), 1.0, &levels, |c| {
+            crossings(&lattice(&volume), segments(&volume, &ray).map(Passed::Shown), 1.0, &levels, |c| {
                 assert!(c.at_mm >= last, "front to back");
                 last = c.at_mm;
                 found[c.level] += 1;
@@ -249,7 +254,7 @@ mod tests {
                     direction: (sign * direction).normalize(),
                 };
                 let mut places = Vec::new();
-                crossings(&lattice(&volume), segments(&volume, &ray), 1.0, &[0.0], |c| {
+                crossings(&lattice(&volume), segments(&volume, &ray).map(Passed::Shown), 1.0, &[0.0], |c| {
                     places.push(c.at_mm);
                     true
                 });

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::classify::{Classifier, Rgbs};
+use super::by_place::ByPlace;
+use crate::classify::Rgbs;
 use crate::field::{GradientUnits, Position, Trilinear, Voxel};
 use crate::integrate::shade::{Shader, Spot};
 use crate::scene::Haze;
@@ -41,7 +42,7 @@ pub(in super::super) struct Classified<'a, V, C, S> {
     pub(in super::super) shader: &'a S,
 }
 
-impl<V: Voxel, C: Classifier<f32>, S: Shader> Medium for Classified<'_, V, C, S> {
+impl<V: Voxel, C: ByPlace, S: Shader> Medium for Classified<'_, V, C, S> {
     type Aim = S::Aim;
 
     fn aim(&self, direction: DVec3, aim: &mut S::Aim) {
@@ -55,7 +56,7 @@ impl<V: Voxel, C: Classifier<f32>, S: Shader> Medium for Classified<'_, V, C, S>
             Some(magnitude) if C::READS_GRADIENT => magnitude.value(&cell),
             _ => 0.0,
         };
-        let optics = self.classifier.classify(self.field.value(&cell), magnitude);
+        let optics = self.classifier.classify_in(&cell, self.field.value(&cell), magnitude);
         // Rounding may leave a trace below 0 at the foot of a ramp.
         let optics = optics.map(|x| if x > 0.0 { x } else { 0.0 });
         if !S::SHADES {

@@ -8,6 +8,7 @@
 //! ([`gather`]); a picture of surfaces ([`surfaces`]) looks for changes between neighbouring samples.
 
 mod blocks;
+mod by_place;
 mod composite;
 mod gather;
 mod jitter;
@@ -18,6 +19,7 @@ mod number;
 mod probe;
 mod surfaces;
 
+pub(super) use by_place::{ByPlace, Masked};
 pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
 pub(super) use medium::Classified;

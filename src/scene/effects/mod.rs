@@ -4,6 +4,7 @@ mod clip;
 mod depth_cue;
 mod fog;
 mod haze;
+mod mask;
 mod scattering;
 mod shadows;
 
@@ -11,18 +12,21 @@ pub use clip::{Clip, HalfSpace};
 pub use depth_cue::DepthCue;
 pub use fog::{Fog, FogLaw};
 pub use haze::Haze;
+pub use mask::{Class, Mask};
 pub use scattering::Scattering;
 pub use shadows::Shadows;
 
 /// What a scene asks for beyond emission and absorption; nothing by default.
 ///
-/// They apply in this order. What is outside `clip` neither absorbs nor emits. At each point that is left, the transfer
+/// They apply in this order. What is outside `clip` neither absorbs nor emits, nor what `mask` hides. At each point that is left, the transfer
 /// function's emission is shaded, its lit terms dimmed by `depth_cue` and `shadows`; `scattering` replaces its share of the
 /// emission; `fog` mixes in its colour; `haze` adds a medium of its own.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Effects {
     /// The part of space that is shown.
     pub clip: Clip,
+    /// What each class of voxels shows, where not all show the same.
+    pub mask: Option<Mask>,
     /// Where the transfer function is evaluated.
     pub classify: ClassifyAt,
     /// Levoy's dimming of lit terms with distance.
