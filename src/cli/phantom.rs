@@ -20,6 +20,19 @@ pub(super) struct Phantom {
 enum Kind {
     /// A head: skin, skull, brain, ventricles, airways and teeth, in HU
     Head(Head),
+    /// Three rings in changing colours: an RGBA volume
+    Rings(Rings),
+}
+
+#[derive(Debug, clap::Args)]
+struct Rings {
+    /// Write a NRRD file
+    #[arg(long, value_name = "FILE")]
+    nrrd: PathBuf,
+
+    /// Voxels along each side
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    size: usize,
 }
 
 #[derive(Debug, clap::Args)]
@@ -49,7 +62,13 @@ struct Head {
 impl Phantom {
     /// Makes the scan and writes it; the paths written go to stdout.
     pub(super) fn run(&self) -> Result<()> {
-        let Kind::Head(head) = &self.kind;
+        let head = match &self.kind {
+            Kind::Head(head) => head,
+            Kind::Rings(rings) => {
+                nrrd::write(&rings.nrrd, &synthetic::rings(rings.size)?, nrrd::Encoding::Gzip, &[])?;
+                return stdout::print(&rings.nrrd.display().to_string());
+            }
+        };
         let volume = synthetic::head(&HeadPhantom { size: head.size, seed: head.seed, noise_hu: head.noise_hu })?;
         if let Some(path) = &head.nrrd {
             nrrd::write(path, &volume, nrrd::Encoding::Gzip, &[])?;

@@ -4,20 +4,22 @@
 //! choices of a [`Schedule`] change how long a picture takes, never the picture.
 
 mod chord;
+mod classify_voxels;
 mod empty_space;
 pub mod exact;
 mod march;
 mod reference;
 mod select;
 mod shade;
+mod texels;
 mod tiles;
 
 use std::fmt;
 
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
 use crate::image::Image;
 use crate::plan::Method;
-use crate::scene::Scene;
+use crate::scene::{Model, Scene};
 use crate::volume::Volume;
 
 /// A picture, and what it took.
@@ -63,7 +65,7 @@ pub type Progress<'a> = &'a (dyn Fn(usize) + Sync);
 /// Renders a scene.
 ///
 /// # Errors
-/// `Fault::Unsupported` for marching what is not light, `Fault::Spec` for settings that are no usable numbers, `Fault::Limit` for a step so small that a picture would take for
+/// `Fault::Unsupported` for marching what is not light and for anything but light of an RGBA volume, `Fault::Spec` for settings that are no usable numbers, `Fault::Limit` for a step so small that a picture would take for
 /// ever.
 pub fn render(volume: &Volume, scene: &Scene, method: &Method, progress: Progress<'_>) -> Result<Rendered> {
     render_scheduled(volume, scene, method, Schedule::default(), progress)
@@ -80,6 +82,7 @@ pub fn render_scheduled(
     schedule: Schedule,
     progress: Progress<'_>,
 ) -> Result<Rendered> {
+    check_colors(volume, scene)?;
     let frame = Frame { volume, scene, schedule, progress };
     match method {
         Method::March(settings) => {
@@ -89,6 +92,20 @@ pub fn render_scheduled(
         Method::Exact(settings) => exact::render(&frame, settings),
         Method::Reference => Ok(reference::render(&frame)),
     }
+}
+
+/// Refuses what an RGBA volume cannot show.
+fn check_colors(volume: &Volume, scene: &Scene) -> Result<()> {
+    let asked = match &scene.model {
+        _ if !volume.samples().are_rgba() => return Ok(()),
+        Model::Value(_) => "a number of its values",
+        Model::Surfaces(_) => "level surfaces of its values",
+        Model::Light if scene.shading.is_some() => "shading by the gradient of its values",
+        Model::Light => return Ok(()),
+    };
+    Err(Error::new(Fault::Unsupported, "an RGBA volume has colours and no values")
+        .found(asked)
+        .expected("light alone, which it absorbs and emits by itself"))
 }
 
 /// What is pictured, and how the work is to be done.

@@ -21,6 +21,11 @@ impl<'a> Cell<'a> {
         Cell { volume, corners }
     }
 
+    /// The lattice points at the corners.
+    pub(super) fn corners(&self) -> [[usize; 3]; 8] {
+        self.corners
+    }
+
     /// Values at the corners.
     pub(super) fn values(&self) -> [f64; 8] {
         self.corners.map(|c| self.volume.value(c))

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::io::{self, Scan, dicom::SeriesChoice};
-use crate::spec::{PhantomHead, PhantomSpec, Series, Spec, VolumeSource};
+use crate::spec::{PhantomHead, PhantomRings, PhantomSpec, Series, Spec, VolumeSource};
 use crate::synthetic::{self, HeadPhantom};
 
 /// Reads or makes the volume of a spec, its values understood as the spec says.
@@ -13,6 +13,11 @@ pub fn load(spec: &Spec) -> Result<Scan> {
     let scan = match spec.volume_source() {
         VolumeSource::File { path, series } => io::load(&path, &choice(series))?,
         VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head)?,
+        VolumeSource::Phantom(PhantomSpec::Rings(PhantomRings { size })) => {
+            let volume = synthetic::rings(size.map_or(64, |size| size as usize))?;
+            let facts = vec![("format".to_string(), "synthetic rings in colours".to_string())];
+            Scan { volume, facts, warnings: Vec::new(), files: Vec::new() }
+        }
     };
     Ok(Scan { volume: spec.interpret(scan.volume), ..scan })
 }

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use crate::scene::{Background, Camera, Light, Projection, Shading};
+use crate::scene::{Background, Camera, ClassifyAt, Light, Projection, Shading};
+use crate::volume::{ColorEncoding, RgbaEncoding};
 
 use super::Plan;
 
@@ -17,7 +18,9 @@ pub fn explain(plan: &Plan) -> String {
     }
     line(&mut text, "memory", &bytes(plan.memory_bytes()));
     text.push('\n');
-    line(&mut text, "layers", &plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + "));
+    if plan.colors.is_none() {
+        line(&mut text, "layers", &plan.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(" + "));
+    }
     line(&mut text, "light", &describe_shading(plan.scene.shading.as_ref()));
     line(&mut text, "behind", &describe_background(plan.scene.background));
     line(&mut text, "camera", &describe_camera(&plan.scene.camera));
@@ -126,6 +129,17 @@ pub fn explain_json(plan: &Plan) -> Value {
     json!({
         "stages": plan.stages,
         "memory_bytes": plan.memory_bytes(),
+        "colors": plan.colors.map(|RgbaEncoding { opacity_length_mm, color }| json!({
+            "opacity_length_mm": opacity_length_mm,
+            "encoding": match color {
+                ColorEncoding::Srgb => "srgb",
+                ColorEncoding::Linear => "linear",
+            }
+        })),
+        "classify": match plan.scene.effects.classify {
+            ClassifyAt::Samples => "samples",
+            ClassifyAt::Voxels => "voxels",
+        },
         "transfer_function": {
             "window": tf.window(),
             "gradient_range_per_mm": tf.gradient_range_per_mm(),

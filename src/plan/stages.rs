@@ -1,9 +1,10 @@
 //! What is computed, in order, and what is not, and why.
 
-use crate::scene::{Model, Scene};
+use crate::scene::{ClassifyAt, Model, Scene};
 use crate::spec::Spec;
 use crate::volume::Grid;
 
+use super::voxels;
 use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, SampleRule, VolumeInfo};
 
 /// One stage of the computation.
@@ -33,7 +34,15 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     let voxels = volume.grid.voxel_count() as u64;
     let mut stages =
         vec![Stage { name: "volume", what: describe_volume(volume), bytes: voxels * volume.storage.bytes() }];
-    let mut field = |what: &str, bytes| stages.push(Stage { name: "field", what: what.to_owned(), bytes });
+    let given = voxels::are_given(plan);
+    if given {
+        stages.extend(voxels::stages(plan, volume, || classify(plan)));
+    }
+    let mut field = |what: &str, bytes| {
+        if !given {
+            stages.push(Stage { name: "field", what: what.to_owned(), bytes });
+        }
+    };
     if plan.demand.gradient_magnitude && plan.demand.macrocells {
         field("gradient magnitude at the voxels, by central differences, f32", 4 * voxels);
     } else if plan.demand.gradient_magnitude {
@@ -46,7 +55,7 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         let channels = if plan.demand.gradient_magnitude { 2 } else { 1 };
         field("macrocells: value ranges of blocks of 8 x 8 x 8 cells", 8 * channels * block_count(&volume.grid));
     }
-    if plan.scene.model == Model::Light {
+    if plan.scene.model == Model::Light && !given {
         stages.push(classify(plan));
     }
     let pixels: u64 = plan.scene.camera.size().iter().map(|&n| n as u64).product();
@@ -71,13 +80,14 @@ fn describe_volume(volume: &VolumeInfo) -> String {
     let mm = volume.grid.spacing_mm();
     let [low, high] = volume.value_range;
     let (unit, storage) = (volume.unit(), volume.storage.name());
-    format!(
-        "{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {:.3} mm, {storage}, values {low} to {high} {unit}",
-        mm.x, mm.y, mm.z
-    )
+    let values = match volume.storage.rgba_encoding() {
+        Some(_) => format!("alpha {low} to {high}"),
+        None => format!("values {low} to {high} {unit}"),
+    };
+    format!("{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {:.3} mm, {storage}, {values}", mm.x, mm.y, mm.z)
 }
 
-fn block_count(grid: &Grid) -> u64 {
+pub(super) fn block_count(grid: &Grid) -> u64 {
     grid.dims().iter().map(|&n| (n - 1).div_ceil(BLOCK_CELLS).max(1) as u64).product()
 }
 
@@ -112,6 +122,9 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
         Method::Reference => return "reference in f64".to_owned(),
     };
     match scene.model {
+        Model::Light if volume.storage.rgba_encoding().is_some() || scene.effects.classify == ClassifyAt::Voxels => {
+            return format!("{method}/{}", voxels::kernel(scene, volume));
+        }
         Model::Light => {}
         Model::Value(_) => return format!("{method}/{}/value/f64", volume.storage.name()),
         Model::Surfaces(_) => return format!("{method}/{}/surfaces/f64", volume.storage.name()),
@@ -160,11 +173,12 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     let mut omissions = Vec::new();
     let mut omit = |what, why: &str| omissions.push(Omission { what, why: why.to_owned() });
     match plan.scene.model {
+        Model::Light if plan.colors.is_some() => omit("classification", "the volume has colours of its own"),
         Model::Light => {}
         Model::Value(_) => omit("classification", "effects.project shows a number of the values, not light"),
         Model::Surfaces(_) => omit("classification", "effects.surfaces shows surfaces, not light"),
     }
-    if !plan.demand.gradient_magnitude {
+    if !plan.demand.gradient_magnitude && plan.colors.is_none() {
         omit("gradient magnitude", "no layer depends on it within the range of gradient magnitudes");
     }
     if !plan.demand.gradient {
@@ -172,6 +186,7 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
         omit(
             "gradient",
             match shading {
+                None if plan.colors.is_some() => "the volume has no values",
                 None => "no effect asks for shading",
                 Some(_) => "shading has neither diffuse nor specular light, so it is a constant factor",
             },

@@ -10,13 +10,17 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     let mut warnings = Vec::new();
     let tf = &plan.scene.transfer_function;
     let ([low, high], [least, most]) = (tf.window(), volume.value_range);
-    if least < low || most > high {
+    if plan.colors.is_none() && (least < low || most > high) {
         warnings.push(format!(
             "values from {least} to {most} go beyond the window {low} to {high} and look like its ends; \
              normalise.hu widens it"
         ));
     }
-    if shows_nothing(tf, volume.value_range) {
+    let nothing = match plan.colors {
+        Some(_) => most == 0.0,
+        None => shows_nothing(tf, volume.value_range),
+    };
+    if nothing {
         warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
     }
     for (_, preset) in spec.layers() {

@@ -15,15 +15,18 @@ mod ray;
 mod shade;
 mod splits;
 mod values;
+mod voxels;
 
 use crate::classify::{Baked, bake};
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::plan::Exact;
-use crate::scene::{Model, Ray, Scene, Shading};
+use crate::scene::{ClassifyAt, Model, Ray, Scene, Shading};
 use crate::volume::{Samples, Volume};
 
+use super::classify_voxels::classify_voxels;
+use super::texels::{Component, Rgba};
 use super::tiles::{self, Radiance};
 use super::{Rendered, Statistics};
 use lattice::Lattice;
@@ -86,12 +89,20 @@ pub trait Tracer: Sync {
     fn kernel(&self) -> &str;
 }
 
-/// The exact integrator for a scene, within `tolerance` of a channel of a pixel.
+/// The exact integrator for a scene, within `tolerance` of a channel of a pixel. An RGBA volume shows its light, whatever
+/// else the scene asks for; [`render`](super::render) refuses what an RGBA volume cannot show.
 pub fn tracer<'a>(volume: &'a Volume, scene: &'a Scene, tolerance: f64, precision: Precision) -> Box<dyn Tracer + 'a> {
     match volume.samples() {
         Samples::I16(samples) => for_samples(volume, scene, samples, tolerance, precision),
         Samples::F32(samples) => for_samples(volume, scene, samples, tolerance, precision),
+        Samples::Rgba8(texels) => for_colors(volume, texels, tolerance),
+        Samples::Rgba16(texels) => for_colors(volume, texels, tolerance),
     }
+}
+
+fn for_colors<'a, T: Component>(volume: &'a Volume, texels: &'a [[T; 4]], tolerance: f64) -> Box<dyn Tracer + 'a> {
+    let Some(encoding) = volume.rgba_encoding() else { unreachable!("colours are understood in some way") };
+    voxels::tracer(volume.grid(), Rgba::new(texels, encoding), tolerance, format!("exact/{}/unlit/f64", T::NAME))
 }
 
 fn for_samples<'a, V: Voxel>(
@@ -105,6 +116,12 @@ fn for_samples<'a, V: Voxel>(
     let frame = Frame { grid: volume.grid(), tolerance, brightest: Brightest::of(scene) };
     let (tf, rescale, shading) = (&scene.transfer_function, volume.rescale(), scene.shading.as_ref());
     match &scene.model {
+        Model::Light if scene.effects.classify == ClassifyAt::Voxels => {
+            let classifier = if tf.reads_gradient() { "tf2d" } else { "tf1d" };
+            let lit = if shading.is_some() { "lit" } else { "unlit" };
+            let name = format!("exact/voxels/{classifier}/{lit}/f64");
+            return voxels::tracer(volume.grid(), classify_voxels(volume, scene), tolerance, name);
+        }
         Model::Light => {}
         Model::Value(model) => {
             let (grid, rescale) = (volume.grid(), volume.rescale());

@@ -9,10 +9,12 @@ mod jitter;
 mod kernel;
 mod lattice;
 mod medium;
+mod voxels;
 
 pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
 pub(super) use medium::Classified;
+pub(super) use voxels::AtVoxels;
 
 use crate::error::{Error, Fault, Result};
 use crate::plan::March;

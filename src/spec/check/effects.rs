@@ -1,8 +1,9 @@
 //! Checks on effects, and on what they leave for others to read.
 
+use super::pipeline::is_nrrd;
 use super::{Check, join};
 use crate::error::Result;
-use crate::spec::{EffectsSpec, IntegrateSpec, LightSpec, Pipeline};
+use crate::spec::{EffectsSpec, IntegrateSpec, LightSpec, PhantomSpec, Pipeline, VolumeSpec};
 
 /// Light needs a transfer function; numbers of the values, and surfaces, have no use for one, nor numbers for shading.
 pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<()> {
@@ -15,10 +16,20 @@ pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<
     check.unread("effects.shading", effects.shading.is_some() && project, "a number of the values has no light")?;
     let marched = matches!(pipeline.integrate, Some(IntegrateSpec::March(_)));
     check.unread("integrate.march", marched && (project || surfaces), "they are exact, and take no steps")?;
-    if project || surfaces {
+    let classify = "effects.classify";
+    check.unread(classify, effects.classify.is_some() && (project || surfaces), "there is no transfer function")?;
+    if project || surfaces || may_have_colors(&pipeline.volume) {
         return Ok(());
     }
     check.require("transfer_function", written, "at least one layer")
+}
+
+/// True if the volume may have colours of its own in place of values; what it has is known once it is read.
+fn may_have_colors(volume: &VolumeSpec) -> bool {
+    match (&volume.phantom, volume.source.as_deref()) {
+        (Some(phantom), _) => matches!(phantom, PhantomSpec::Rings(_)),
+        (None, source) => source.is_some_and(is_nrrd),
+    }
 }
 
 pub(super) fn check_effects(check: Check<'_>, effects: &EffectsSpec) -> Result<()> {
