@@ -29,8 +29,9 @@ const NEVER: [(&str, &str, &str); 1] =
     [("integrate", "spec", "what may be written is resolved by the plan before the first ray")];
 
 /// Uses that the layers forbid and are right all the same: `(user, used, why)`.
-const EXCEPTIONS: [(&str, &str, &str); 2] = [
+const EXCEPTIONS: [(&str, &str, &str); 3] = [
     ("scene", "transfer", "a scene holds its transfer function, which knows of no scene"),
+    ("volume", "image", "the colours of an RGBA volume are what a picture's are: sRGB"),
     ("scene", "image", "the grey of a projected value is defined by what a display shows: sRGB"),
 ];
 

@@ -22,3 +22,4 @@ mod properties;
 mod spec;
 mod support;
 mod verify;
+mod voxels;

@@ -2,6 +2,7 @@
 //!
 //! Files are made here byte by byte, not by our own writer, except where the round trip is the test.
 
+mod colors;
 mod encodings;
 mod errors;
 mod fields;

@@ -24,6 +24,19 @@ enum Kind {
     Head(Head),
     /// The formula of a pipeline's `volume: { analytic: … }`, sampled
     Analytic(Analytic),
+    /// Three rings in changing colours: an RGBA volume
+    Rings(Rings),
+}
+
+#[derive(Debug, clap::Args)]
+struct Rings {
+    /// Write a NRRD file
+    #[arg(long, value_name = "FILE")]
+    nrrd: PathBuf,
+
+    /// Voxels along each side
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    size: usize,
 }
 
 #[derive(Debug, clap::Args)]
@@ -70,6 +83,10 @@ impl Phantom {
         match &self.kind {
             Kind::Head(head) => head.run(),
             Kind::Analytic(analytic) => analytic.run(),
+            Kind::Rings(rings) => {
+                nrrd::write(&rings.nrrd, &synthetic::rings(rings.size)?, nrrd::Encoding::Gzip, &[])?;
+                stdout::print(&rings.nrrd.display().to_string())
+            }
         }
     }
 }

@@ -13,6 +13,7 @@
 //!   interpolated vector is another function: it dips where neighbouring gradients disagree.)
 //! * *Macrocells* ([`Macrocells`]): lowest and highest stored value of blocks of 8³ cells, and likewise of the magnitude.
 
+mod corners;
 mod gradient;
 mod macrocell;
 mod magnitude;
@@ -20,6 +21,7 @@ mod position;
 mod trilinear;
 mod voxel;
 
+pub use corners::Corners;
 pub use gradient::GradientUnits;
 pub use macrocell::{BLOCK_CELLS, Macrocells};
 pub use magnitude::gradient_magnitude_per_mm;

@@ -6,6 +6,8 @@
 
 use glam::DVec3;
 
+use crate::error::{Error, Fault, Result};
+
 const FRACTION_BITS: u32 = 40;
 /// Bits of the fraction that an f32 holds.
 const KEPT_BITS: u32 = 24;
@@ -30,6 +32,19 @@ pub struct Cell {
 impl Position {
     /// Axes with more voxels than this do not fit the fixed point.
     pub const MAX_VOXELS_PER_AXIS: usize = 1 << 22;
+
+    /// Refuses lattices with an axis longer than positions can address.
+    ///
+    /// # Errors
+    /// `Fault::Limit` for such an axis.
+    pub fn check(dims: [usize; 3]) -> Result<()> {
+        if dims.iter().any(|&n| n > Position::MAX_VOXELS_PER_AXIS) {
+            return Err(Error::new(Fault::Limit, "the volume has too many voxels along an axis")
+                .found(format!("{} x {} x {}", dims[0], dims[1], dims[2]))
+                .expected(format!("at most {}", Position::MAX_VOXELS_PER_AXIS)));
+        }
+        Ok(())
+    }
 
     /// The position nearest to a continuous index, clamped to the cells of a lattice of `dims` voxels. The upper border
     /// belongs to the last cell, at a fraction one part in 2²⁴ short of 1; an axis of one voxel has one position, 0.

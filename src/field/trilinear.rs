@@ -1,7 +1,7 @@
 //! Trilinear interpolation on the lattice.
 
 use super::{Cell, Position, Voxel};
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
 
 /// A scalar channel on the lattice, interpolated trilinearly.
 #[derive(Debug, Clone, Copy)]
@@ -20,11 +20,7 @@ impl<'v, V: Voxel> Trilinear<'v, V> {
     /// lattice.
     pub fn new(voxels: &'v [V], dims: [usize; 3]) -> Result<Self> {
         assert_eq!(voxels.len(), dims.iter().product::<usize>(), "samples of a lattice of {dims:?}");
-        if dims.iter().any(|&n| n > Position::MAX_VOXELS_PER_AXIS) {
-            return Err(Error::new(Fault::Limit, "the volume has too many voxels along an axis")
-                .found(format!("{} x {} x {}", dims[0], dims[1], dims[2]))
-                .expected(format!("at most {}", Position::MAX_VOXELS_PER_AXIS)));
-        }
+        Position::check(dims)?;
         let step = |axis: usize, stride: usize| if dims[axis] == 1 { 0 } else { stride };
         Ok(Trilinear { voxels, dims, strides: [step(0, 1), step(1, dims[0]), step(2, dims[0] * dims[1])] })
     }

@@ -1,6 +1,7 @@
 //! Pictures: linear, premultiplied RGBA in f32 until they are encoded.
 
 pub mod metrics;
+pub mod over;
 pub mod srgb;
 
 /// A picture in memory: linear RGB premultiplied by alpha, f32, row by row from the top left.

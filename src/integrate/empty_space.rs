@@ -4,8 +4,10 @@
 //! 2019); a ray then leaps over whole neighbourhoods. Samples are on the same lattice with and without: a leap counts
 //! steps, exactly, and what it leaps over would have added 0.
 
+use rayon::prelude::*;
+
 use super::march::ByPlace;
-use crate::field::{Macrocells, Pace, Position};
+use crate::field::{BLOCK_CELLS, Macrocells, Pace, Position};
 
 /// Distances to the nearest active block.
 #[derive(Debug, Clone)]
@@ -38,6 +40,21 @@ impl EmptySpace {
     pub(super) fn by_values(values: &Macrocells, is_active: impl Fn([f32; 2]) -> bool) -> Self {
         let active: Vec<bool> = values.ranges().iter().map(|&range| is_active(widened(range))).collect();
         EmptySpace::from_active(values.blocks(), &active)
+    }
+
+    /// The blocks of a lattice in which some voxel shows something, those on their upper faces included: what is
+    /// interpolated in other blocks is nothing.
+    pub(super) fn around(dims: [usize; 3], is_lit: impl Fn(usize) -> bool + Sync) -> Self {
+        let blocks = Macrocells::blocks_of(dims);
+        let [across, down, _] = blocks;
+        let voxels = |block: usize, a: usize| block * BLOCK_CELLS..=((block + 1) * BLOCK_CELLS).min(dims[a] - 1);
+        let is_active = |b: usize| {
+            let [i, j, k] = [b % across, b / across % down, b / (across * down)];
+            let line = |y: usize, z: usize| dims[0] * (y + dims[1] * z);
+            voxels(k, 2).any(|z| voxels(j, 1).any(|y| voxels(i, 0).any(|x| is_lit(line(y, z) + x))))
+        };
+        let active: Vec<bool> = (0..blocks.iter().product()).into_par_iter().map(is_active).collect();
+        EmptySpace::from_active(blocks, &active)
     }
 
     fn from_active(blocks: [usize; 3], active: &[bool]) -> Self {

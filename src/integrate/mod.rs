@@ -5,6 +5,7 @@
 
 mod atmosphere;
 mod chord;
+mod classify_voxels;
 mod empty_space;
 pub mod exact;
 mod light_volumes;
@@ -12,14 +13,15 @@ mod march;
 mod reference;
 mod select;
 mod shade;
+mod texels;
 mod tiles;
 
 use std::fmt;
 
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
 use crate::image::Image;
 use crate::plan::Method;
-use crate::scene::{Model, Scene};
+use crate::scene::{ClassifyAt, Model, Scene};
 use crate::volume::Volume;
 
 /// A picture, and what it took.
@@ -65,6 +67,7 @@ pub type Progress<'a> = &'a (dyn Fn(usize) + Sync);
 /// Renders a scene.
 ///
 /// # Errors
+/// `Fault::Unsupported` for anything but light of an RGBA volume, and for what classification at the voxels leaves out,
 /// `Fault::Spec` for settings that are no usable numbers, `Fault::Limit` for a step so small that a picture would take for
 /// ever.
 pub fn render(volume: &Volume, scene: &Scene, method: &Method, progress: Progress<'_>) -> Result<Rendered> {
@@ -82,6 +85,7 @@ pub fn render_scheduled(
     schedule: Schedule,
     progress: Progress<'_>,
 ) -> Result<Rendered> {
+    check_combination(volume, scene, method)?;
     let frame = Frame { volume, scene, schedule, progress };
     match method {
         Method::March(settings) => {
@@ -95,6 +99,35 @@ pub fn render_scheduled(
         Method::Exact(settings) => exact::render(&frame, settings),
         Method::Reference => Ok(reference::render(&frame)),
     }
+}
+
+/// Refuses what no kernel renders.
+fn check_combination(volume: &Volume, scene: &Scene, method: &Method) -> Result<()> {
+    let (colors, effects) = (volume.samples().are_rgba(), &scene.effects);
+    let of_light = effects.change_light() || effects.mask.is_some();
+    let at_voxels = effects.classify == ClassifyAt::Voxels && scene.model == Model::Light;
+    let (what, found, remedy) = match &scene.model {
+        Model::Value(_) if colors => ("an RGBA volume has no values", "a number of its values", "show its light"),
+        Model::Surfaces(_) if colors => ("an RGBA volume has no values", "level surfaces of them", "show its light"),
+        Model::Light if colors && scene.shading.is_some() => {
+            ("an RGBA volume has no values", "shading by their gradient", "show it unshaded")
+        }
+        Model::Light if colors && of_light => (
+            "an RGBA volume shows the light it has",
+            "further effects of light, or a mask",
+            "leave out all but clipping",
+        ),
+        Model::Light if at_voxels && of_light => (
+            "classification at the voxels knows shading alone",
+            "further effects of light, or a mask",
+            "classify samples",
+        ),
+        Model::Value(_) | Model::Surfaces(_) if effects.mask.is_some() && matches!(method, Method::March(_)) => {
+            ("marching does not mask values", "a mask", "use integrate: exact, which cuts rays where classes change")
+        }
+        _ => return Ok(()),
+    };
+    Err(Error::new(Fault::Unsupported, what).found(found).remedy(remedy))
 }
 
 /// What is pictured, and how the work is to be done.

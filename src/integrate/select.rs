@@ -1,22 +1,49 @@
 //! From what a plan says to the types of a kernel, once per frame.
 
 use super::atmosphere::Atmosphere;
+use super::classify_voxels::classify_voxels;
 use super::empty_space::EmptySpace;
-use super::march::{ByPlace, Classified, Kernel, Masked};
+use super::march::{AtVoxels, ByPlace, Classified, Kernel, Masked};
 use super::shade::{Lit, Shader, Unlit};
+use super::texels::{Component, Rgba, Texels};
 use super::{Frame, KernelName, Rendered, Statistics};
 use crate::classify::{Baked, BakedAlike, bake, bake_alike};
 use crate::error::Result;
 use crate::field::{GradientUnits, Macrocells, Trilinear, Voxel, gradient_magnitude_per_mm};
 use crate::plan::March;
+use crate::scene::ClassifyAt;
 use crate::volume::Samples;
 
 /// Renders by marching.
 pub(super) fn march(frame: &Frame<'_>, settings: &March) -> Result<Rendered> {
     match frame.volume.samples() {
+        Samples::Rgba8(texels) => colors(frame, settings, texels),
+        Samples::Rgba16(texels) => colors(frame, settings, texels),
+        _ if frame.scene.effects.classify == ClassifyAt::Voxels => {
+            let reads_gradient = frame.scene.transfer_function.reads_gradient();
+            let shader = if frame.scene.shading.is_some() { Lit::NAME } else { Unlit::NAME };
+            let name = KernelName { method: "march", voxel: "voxels", reads_gradient, suffix: "", shader };
+            at_voxels(frame, settings, classify_voxels(frame.volume, frame.scene), name.to_string())
+        }
         Samples::I16(voxels) => by_classifier(frame, settings, voxels),
         Samples::F32(voxels) => by_classifier(frame, settings, voxels),
     }
+}
+
+fn colors<T: Component>(frame: &Frame<'_>, settings: &March, texels: &[[T; 4]]) -> Result<Rendered> {
+    let Some(encoding) = frame.volume.rgba_encoding() else { unreachable!("colours are understood in some way") };
+    at_voxels(frame, settings, Rgba::new(texels, encoding), format!("march/{}/unlit", T::NAME))
+}
+
+/// Renders a medium given at the voxels.
+fn at_voxels<T: Texels<f32>>(frame: &Frame<'_>, settings: &March, texels: T, kernel: String) -> Result<Rendered> {
+    let dims = frame.volume.grid().dims();
+    let medium = AtVoxels::new(texels, dims)?;
+    let empty_space =
+        frame.schedule.empty_space_skipping.then(|| EmptySpace::around(dims, |voxel| medium.is_lit(voxel)));
+    let (image, tally) = Kernel { medium: &medium, empty_space }.render(frame, settings);
+    let statistics = Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel };
+    Ok(Rendered { image, statistics })
 }
 
 fn by_classifier<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V]) -> Result<Rendered> {

@@ -3,9 +3,11 @@
 mod absorb;
 pub mod bernstein;
 mod each;
+mod opacity;
 mod real;
 pub mod scattering;
 
 pub use absorb::{absorbed_f32, mean_transmittance_f32};
 pub use each::each;
+pub use opacity::extinction_per_mm;
 pub use real::Real;

@@ -30,6 +30,8 @@ impl Clipped {
         let add = |a: (u64, u64), b: (u64, u64)| (a.0 + b.0, a.1 + b.1);
         let (below, above) = match volume.samples() {
             Samples::I16(data) => data.par_iter().map(|&v| outside(f64::from(v))).reduce(|| (0, 0), add),
+            // Colours are not put into a window.
+            Samples::Rgba8(_) | Samples::Rgba16(_) => (0, 0),
             Samples::F32(data) => data.par_iter().map(|&v| outside(f64::from(v))).reduce(|| (0, 0), add),
         };
         Clipped { below, above, voxels: volume.samples().len() as u64 }

@@ -3,7 +3,7 @@
 use super::{Options, analytic, memory};
 use crate::error::Result;
 use crate::io::{self, Scan, dicom::SeriesChoice};
-use crate::spec::{PhantomHead, PhantomSpec, Series, Spec, VolumeSource};
+use crate::spec::{PhantomHead, PhantomRings, PhantomSpec, Series, Spec, VolumeSource};
 use crate::synthetic::{self, HeadPhantom};
 
 /// Reads or makes the volume of a spec, its values understood as the spec says.
@@ -16,6 +16,13 @@ pub fn load(spec: &Spec, options: &Options) -> Result<Scan> {
     let scan = match spec.volume_source() {
         VolumeSource::File { path, series } => io::load(&path, &choice(series), max_bytes)?,
         VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head, max_bytes)?,
+        VolumeSource::Phantom(PhantomSpec::Rings(PhantomRings { size })) => {
+            let size = size.map_or(64, |size| size as usize);
+            let reading_bytes = 4 * (size as u64).pow(3);
+            memory::refuse_beyond(max_bytes, reading_bytes, "volume.phantom.rings.size")?;
+            let facts = vec![("format".to_string(), "synthetic rings in colours".to_string())];
+            Scan { volume: synthetic::rings(size)?, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes }
+        }
         VolumeSource::Analytic(formula) => analytic::load(spec, &formula, max_bytes)?,
     };
     Ok(Scan { volume: spec.interpret(scan.volume), ..scan })

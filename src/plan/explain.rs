@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use crate::scene::{Background, Camera, Clip, HalfSpace, Light, Model, Projection, Shading};
+use crate::scene::{Background, Camera, ClassifyAt, Clip, HalfSpace, Light, Model, Projection, Shading};
+use crate::volume::{ColorEncoding, RgbaEncoding};
 
 use super::{Plan, effects};
 
@@ -152,6 +153,17 @@ pub fn explain_json(plan: &Plan) -> Value {
         "stages": plan.stages,
         "memory_bytes": plan.memory_bytes(),
         "memory_peak_while": plan.peak().0,
+        "colors": plan.colors.map(|RgbaEncoding { opacity_length_mm, color }| json!({
+            "opacity_length_mm": opacity_length_mm,
+            "encoding": match color {
+                ColorEncoding::Srgb => "srgb",
+                ColorEncoding::Linear => "linear",
+            }
+        })),
+        "classify": match plan.scene.effects.classify {
+            ClassifyAt::Samples => "samples",
+            ClassifyAt::Voxels => "voxels",
+        },
         "transfer_function": {
             "window": tf.window(),
             "gradient_range_per_mm": tf.gradient_range_per_mm(),

@@ -6,6 +6,7 @@
 
 mod camera;
 mod clip;
+mod colors;
 mod effects;
 mod explain;
 mod integrator;
@@ -16,6 +17,7 @@ mod model;
 mod output;
 mod stages;
 mod volume_info;
+mod voxels;
 mod warnings;
 
 use effects::{Resolved, Surroundings};
@@ -33,6 +35,7 @@ use crate::error::Result;
 use crate::scene::{Scene, Shading};
 use crate::spec::Spec;
 use crate::transfer::TransferFunction;
+use crate::volume::RgbaEncoding;
 
 /// What will be done, for one volume; the same for any number of threads.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +46,8 @@ pub struct Plan {
     pub method: Method,
     /// The layers whose sum is the scene's transfer function, in the order written; for classification.
     pub layers: Vec<Layer>,
+    /// How the volume's colours are understood; `None` for a volume of values.
+    pub colors: Option<RgbaEncoding>,
     /// What the stages together read of the volume.
     pub demand: Demand,
     /// The file to write.
@@ -68,6 +73,7 @@ impl Plan {
     /// and for a picture whose suffix names no format.
     pub fn new(spec: &Spec, volume: &VolumeInfo, output: Option<&Path>) -> Result<Self> {
         let output = Output::resolve(spec, output)?;
+        let colors = colors::resolve(spec, volume)?;
         let [window, gradient_range] = layers::domain(&spec.pipeline);
         let light = light::resolve(spec);
         let layers = layers::resolve(spec, volume, gradient_range[1], light.scales)?;
@@ -99,6 +105,7 @@ impl Plan {
             scene,
             method,
             layers,
+            colors,
             demand,
             output,
             certify: spec.pipeline.certify.map(|pixels| pixels as usize),

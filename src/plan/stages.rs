@@ -1,12 +1,12 @@
 //! What is computed, in order, and what is not, and why.
 
-use crate::scene::{Model, Scene, ValueModel, ValueOf};
+use crate::scene::{ClassifyAt, Model, Scene, ValueModel, ValueOf};
 use crate::spec::Spec;
 use crate::volume::Grid;
 
-use super::clip;
 use super::model::{self, reads_transfer_function};
 use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, SampleRule, VolumeInfo};
+use super::{clip, voxels};
 
 /// One stage of the computation.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -36,7 +36,15 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     let voxels = volume.grid.voxel_count() as u64;
     let mut stages =
         vec![Stage { name: "volume", what: describe_volume(volume), bytes: voxels * volume.storage.bytes() }];
-    let mut field = |what: &str, bytes| stages.push(Stage { name: "field", what: what.to_owned(), bytes });
+    let given = voxels::are_given(plan);
+    if given {
+        stages.extend(voxels::stages(plan, volume, || classify(plan)));
+    }
+    let mut field = |what: &str, bytes| {
+        if !given {
+            stages.push(Stage { name: "field", what: what.to_owned(), bytes });
+        }
+    };
     if plan.demand.gradient_magnitude && plan.demand.macrocells {
         field("gradient magnitude at the voxels, by central differences, f32", 4 * voxels);
     } else if plan.demand.gradient_magnitude {
@@ -49,7 +57,7 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         let channels = if plan.demand.gradient_magnitude { 2 } else { 1 };
         field("macrocells: value ranges of blocks of 8 x 8 x 8 cells", 8 * channels * block_count(&volume.grid));
     }
-    if reads_transfer_function(&plan.scene) {
+    if reads_transfer_function(&plan.scene) && !given {
         stages.push(classify(plan));
     }
     if plan.demand.visibility {
@@ -80,13 +88,14 @@ fn describe_volume(volume: &VolumeInfo) -> String {
     let mm = volume.grid.spacing_mm();
     let [low, high] = volume.value_range;
     let (unit, storage) = (volume.unit(), volume.storage.name());
-    format!(
-        "{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {:.3} mm, {storage}, values {low} to {high} {unit}",
-        mm.x, mm.y, mm.z
-    )
+    let values = match volume.storage.rgba_encoding() {
+        Some(_) => format!("alpha {low} to {high}"),
+        None => format!("values {low} to {high} {unit}"),
+    };
+    format!("{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {:.3} mm, {storage}, {values}", mm.x, mm.y, mm.z)
 }
 
-fn block_count(grid: &Grid) -> u64 {
+pub(super) fn block_count(grid: &Grid) -> u64 {
     grid.dims().iter().map(|&n| (n - 1).div_ceil(BLOCK_CELLS).max(1) as u64).product()
 }
 
@@ -120,6 +129,11 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
         Method::March(_) => ("march", "f32"),
         Method::Reference => return "reference in f64".to_owned(),
     };
+    if scene.model == Model::Light
+        && (volume.storage.rgba_encoding().is_some() || scene.effects.classify == ClassifyAt::Voxels)
+    {
+        return format!("{method}/{}", voxels::kernel(scene, volume));
+    }
     let storage = volume.storage.name();
     let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
     match &scene.model {
@@ -186,10 +200,13 @@ fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
 pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     let mut omissions = Vec::new();
     let mut omit = |what, why: &str| omissions.push(Omission { what, why: why.to_owned() });
+    if plan.colors.is_some() {
+        omit("classification", "the volume has colours of its own");
+    }
     for omission in model::not_computed(plan, spec) {
         omit(omission.what, &omission.why);
     }
-    if !plan.demand.gradient_magnitude {
+    if !plan.demand.gradient_magnitude && plan.colors.is_none() {
         omit("gradient magnitude", "no layer depends on it within the range of gradient magnitudes");
     }
     if !plan.demand.gradient {
@@ -197,6 +214,7 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
         omit(
             "gradient",
             match shading {
+                None if plan.colors.is_some() => "the volume has no values",
                 None => "no effect asks for shading",
                 Some(_) => "shading has neither diffuse nor specular light, so it is a constant factor",
             },

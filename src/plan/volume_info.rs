@@ -1,6 +1,6 @@
 //! What a plan needs to know of a volume: all but its samples.
 
-use crate::volume::{Grid, Quantity, Samples, Volume};
+use crate::volume::{Grid, Quantity, RgbaEncoding, Samples, Volume};
 
 /// What a plan needs to know of a volume: all but its samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,12 +18,16 @@ pub struct VolumeInfo {
 }
 
 /// How samples are stored in memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Storage {
     /// 16-bit integers.
     I16,
     /// 32-bit floats.
     F32,
+    /// Colours with an opacity, four integers of 8 bits.
+    Rgba8(RgbaEncoding),
+    /// Colours with an opacity, four integers of 16 bits.
+    Rgba16(RgbaEncoding),
 }
 
 impl Storage {
@@ -32,6 +36,8 @@ impl Storage {
         match self {
             Storage::I16 => "i16",
             Storage::F32 => "f32",
+            Storage::Rgba8(_) => "rgba8",
+            Storage::Rgba16(_) => "rgba16",
         }
     }
 
@@ -39,7 +45,16 @@ impl Storage {
     pub(super) fn bytes(self) -> u64 {
         match self {
             Storage::I16 => 2,
-            Storage::F32 => 4,
+            Storage::F32 | Storage::Rgba8(_) => 4,
+            Storage::Rgba16(_) => 8,
+        }
+    }
+
+    /// How colours are understood; `None` for values.
+    pub(super) fn rgba_encoding(self) -> Option<RgbaEncoding> {
+        match self {
+            Storage::I16 | Storage::F32 => None,
+            Storage::Rgba8(encoding) | Storage::Rgba16(encoding) => Some(encoding),
         }
     }
 }
@@ -56,9 +71,11 @@ impl VolumeInfo {
 
 impl From<&Volume> for VolumeInfo {
     fn from(volume: &Volume) -> Self {
-        let storage = match volume.samples() {
-            Samples::I16(_) => Storage::I16,
-            Samples::F32(_) => Storage::F32,
+        let storage = match (volume.samples(), volume.rgba_encoding()) {
+            (Samples::I16(_), _) => Storage::I16,
+            (Samples::Rgba8(_), Some(encoding)) => Storage::Rgba8(encoding),
+            (Samples::Rgba16(_), Some(encoding)) => Storage::Rgba16(encoding),
+            _ => Storage::F32,
         };
         VolumeInfo {
             grid: *volume.grid(),

@@ -13,8 +13,11 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     let mut warnings = Vec::new();
     let tf = &plan.scene.transfer_function;
     let [low, high] = tf.window();
-    if reads_transfer_function(&plan.scene) {
-        let [least, most] = volume.value_range;
+    let [least, most] = volume.value_range;
+    if plan.colors.is_some() && most == 0.0 {
+        warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
+    }
+    if plan.colors.is_none() && reads_transfer_function(&plan.scene) {
         if least < low || most > high {
             warnings.push(format!(
                 "values from {least} to {most} go beyond the window {low} to {high} and look like its ends; \
@@ -26,11 +29,11 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
                 .push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
         }
     }
-    if is_black(&plan.scene) {
+    if plan.colors.is_none() && is_black(&plan.scene) {
         let why = "nothing emits and the background is black, so the picture will be black";
         warnings.push(format!("{why}; image.background lights the volume from behind"));
     }
-    if adds_light_without_alpha(&plan.scene) && plan.output.format != Format::Exr {
+    if plan.colors.is_none() && adds_light_without_alpha(&plan.scene) && plan.output.format != Format::Exr {
         let why = "emission alone has no alpha, and a PNG cannot hold light without alpha";
         warnings.push(format!("{why}; write image.background: black, or an OpenEXR picture"));
     }

@@ -125,6 +125,14 @@ impl Camera {
         }
     }
 
+    /// Direction of the ray that passes a point, LPS; at the eye itself, which every ray passes, straight ahead.
+    pub fn direction_to(&self, point_mm: DVec3) -> DVec3 {
+        match self.projection {
+            Projection::Perspective { .. } => (point_mm - self.position_mm).try_normalize().unwrap_or(self.forward()),
+            Projection::Parallel { .. } => self.forward(),
+        }
+    }
+
     /// The ray through the centre of pixel `(column, row)`, counted from the top left.
     pub fn pixel_ray(&self, column: usize, row: usize) -> Ray {
         self.ray(column as f64 + 0.5, row as f64 + 0.5)

@@ -31,9 +31,9 @@ pub use analytic::{AnalyticSpec, FieldSpec, MarschnerLobbSpec, RampSpec, SphereS
 pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
 pub use effects::{
-    ClipBoxSpec, ClipPlaneSpec, ClipSpec, DepthCueSpec, EffectsSpec, ExpFogSpec, FogSpec, HazeSpec, LightSpec,
-    LinearFogSpec, ProjectSpec, ProjectionOf, RangeSpec, ScatteringSpec, ShadingSpec, ShadowsSpec, SurfaceSpec,
-    TransportName, TrimSpec,
+    ClassifyAtName, ClipBoxSpec, ClipPlaneSpec, ClipSpec, DepthCueSpec, EffectsSpec, ExpFogSpec, FogSpec, HazeSpec,
+    LightSpec, LinearFogSpec, ProjectSpec, ProjectionOf, RangeSpec, ScatteringSpec, ShadingSpec, ShadowsSpec,
+    SurfaceSpec, TransportName, TrimSpec,
 };
 pub use integrate::{
     ColorsName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName,
@@ -42,8 +42,8 @@ pub use integrate::{
 pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset};
 pub use per_axis::PerAxis;
 pub use pipeline::{
-    AttenuationSpec, BackgroundSpec, Bits, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec, PhantomHead, PhantomSpec,
-    Pipeline, Series, ValuesName, VolumeSpec,
+    AttenuationSpec, BackgroundSpec, Bits, ColorEncodingName, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec,
+    PhantomHead, PhantomRings, PhantomSpec, Pipeline, Series, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
 pub use schema::{pipeline_schema, preset_schema};
@@ -54,7 +54,7 @@ pub use widget::{
 use std::path::{Component, Path, PathBuf};
 
 use crate::error::{Error, Result};
-use crate::volume::{Quantity, Rescale, Volume};
+use crate::volume::{ColorEncoding, Quantity, Rescale, RgbaEncoding, Volume};
 use source::Source;
 
 /// A pipeline with the presets it names, checked as far as that is possible without the scan.
@@ -143,7 +143,8 @@ impl Spec {
         self.pipeline.output.as_deref().map(|path| without_detours(&self.source.resolve("output", path)))
     }
 
-    /// The volume with its values understood as the pipeline says: `values` and `shift_hu`.
+    /// The volume with its values understood as the pipeline says, by `values` and `shift_hu`, or its colours, by
+    /// `opacity_length_mm` and `color_encoding`.
     pub fn interpret(&self, volume: Volume) -> Volume {
         let spec = &self.pipeline.volume;
         let volume = match (spec.values, spec.shift_hu) {
@@ -151,6 +152,14 @@ impl Spec {
             (Some(ValuesName::Hu), _) | (None, Some(_)) => volume.with_quantity(Quantity::Hu),
             (None, None) => volume,
         };
+        if let Some(understood) = volume.rgba_encoding() {
+            let color = spec.color_encoding.map_or(understood.color, |name| match name {
+                ColorEncodingName::Srgb => ColorEncoding::Srgb,
+                ColorEncodingName::Linear => ColorEncoding::Linear,
+            });
+            let opacity_length_mm = spec.opacity_length_mm.unwrap_or(understood.opacity_length_mm);
+            return volume.with_rgba_encoding(RgbaEncoding { opacity_length_mm, color });
+        }
         let Rescale { slope, intercept } = volume.rescale();
         volume.with_rescale(Rescale { slope, intercept: intercept + spec.shift_hu.unwrap_or(0.0) })
     }

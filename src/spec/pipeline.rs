@@ -23,7 +23,8 @@ pub struct Pipeline {
     /// Range of gradient magnitudes that the transfer function covers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gradient: Option<GradientSpec>,
-    /// What shows: the sum of these layers. At least one, unless an effect shows something else than light.
+    /// What shows: the sum of these layers. At least one, unless an effect shows something else than light or the volume has
+    /// colours of its own.
     #[schemars(length(min = 1))]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transfer_function: Vec<LayerSpec>,
@@ -70,6 +71,22 @@ pub struct VolumeSpec {
     /// Added to every value to make it HU, such as -1024 for scans stored as HU + 1024. The values are then HU.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shift_hu: Option<f64>,
+    /// Length that the alpha of an RGBA volume is the opacity of, mm, above 0; its smallest spacing by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub opacity_length_mm: Option<f64>,
+    /// What the numbers of an RGBA volume's colours are; `srgb` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_encoding: Option<ColorEncodingName>,
+}
+
+/// What the numbers of a colour are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColorEncodingName {
+    /// sRGB (IEC 61966-2-1), as pictures have them.
+    Srgb,
+    /// Linear light.
+    Linear,
 }
 
 /// A volume made by rule.
@@ -78,6 +95,18 @@ pub struct VolumeSpec {
 pub enum PhantomSpec {
     /// A head with skin, skull and brain.
     Head(PhantomHead),
+    /// Three rings in changing colours, an RGBA volume.
+    Rings(PhantomRings),
+}
+
+/// Settings of the rings.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PhantomRings {
+    /// Voxels along each side; 64 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 2, max = 1024))]
+    pub size: Option<u32>,
 }
 
 /// Settings of the head phantom.

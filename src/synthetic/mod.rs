@@ -1,4 +1,4 @@
-//! Volumes made by formula: the CT head phantom, and [analytic] fields.
+//! Volumes made by formula: the CT head phantom, [analytic] fields, and rings in colours ([`rings`]).
 //!
 //! The phantom is a head as a CT scanner would see it, for pictures and tests without a patient: skin, fat, muscle,
 //! skull, teeth, brain, airways and vessels filled with contrast medium, in HU. It is defined in patient coordinates
@@ -18,9 +18,12 @@ pub mod analytic;
 mod anatomy;
 mod noise;
 mod raster;
+mod rings;
 mod scene;
 mod sdf;
 mod tissue;
+
+pub use rings::rings;
 
 use glam::{DAffine3, DMat3, DVec3};
 

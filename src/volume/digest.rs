@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::Volume;
+use super::{Samples, Volume};
 
 /// Values that are hashed at once.
 const CHUNK_VALUES: usize = 1 << 14;
@@ -10,6 +10,8 @@ const CHUNK_VALUES: usize = 1 << 14;
 impl Volume {
     /// SHA-256 over all values, x fastest, then y, then z, each as a little-endian f32 (0 for -0); lower-case
     /// hexadecimal.
+    ///
+    /// Of an RGBA volume all four stored components count, red first.
     ///
     /// It depends neither on how samples are stored nor on where the volume lies, so that other programs can compute it
     /// from the same file.
@@ -19,9 +21,13 @@ impl Volume {
         for start in (0..self.samples.len()).step_by(CHUNK_VALUES) {
             bytes.clear();
             for index in start..self.samples.len().min(start + CHUNK_VALUES) {
-                // Adding 0 makes one zero of the two, so that integers and floats agree.
-                let value = self.rescale.value(self.samples.stored(index)) as f32 + 0.0;
-                bytes.extend(value.to_le_bytes());
+                let mut add = |value: f32| bytes.extend(value.to_le_bytes());
+                match &self.samples {
+                    Samples::Rgba8(data) => data[index].map(f32::from).into_iter().for_each(&mut add),
+                    Samples::Rgba16(data) => data[index].map(f32::from).into_iter().for_each(&mut add),
+                    // Adding 0 makes one zero of the two, so that integers and floats agree.
+                    _ => add(self.rescale.value(self.samples.stored(index)) as f32 + 0.0),
+                }
             }
             hash.update(&bytes);
         }
@@ -45,6 +51,10 @@ mod tests {
         let expected = "a033227903711f8e0ad875c5101af1d7f9b797e06a91f8570c4b41491504d9d5";
         assert_eq!(shifted.values_sha256(), expected);
         assert_eq!(floats.values_sha256(), expected);
+        let colors = volume(Samples::Rgba8(vec![[0, 1, 2, 3], [4, 5, 6, 7]]), Rescale::IDENTITY);
+        // python3: sha256(struct.pack("<8f", *range(8)))
+        let of_components = "0571cfe42be5c7b95de9afc7c7ba1286fb7a2ef10a9035f8d6b87d21a3bc8387";
+        assert_eq!(colors.values_sha256(), of_components, "all components of a colour count");
         let other = volume(Samples::I16(vec![1, 0]), Rescale::IDENTITY);
         assert_ne!(other.values_sha256(), expected, "other values have another hash");
     }

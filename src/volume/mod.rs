@@ -7,14 +7,19 @@
 //!
 //! The value of a voxel is `slope · stored + intercept`, in HU for CT ([`Rescale`]). Samples stay at 16 bits in memory
 //! wherever the source has no more ([`Samples`]).
+//!
+//! An RGBA volume has a colour and an opacity at each voxel in place of a value, and absorbs and emits by itself, without a
+//! transfer function ([`RgbaEncoding`]).
 
 mod classes;
 mod digest;
 mod grid;
+mod rgba;
 mod samples;
 
 pub use classes::Classes;
 pub use grid::Grid;
+pub use rgba::{ColorEncoding, RgbaEncoding};
 pub use samples::{Rescale, Samples};
 
 use crate::error::{Error, Fault, Result};
@@ -36,6 +41,8 @@ pub struct Volume {
     rescale: Rescale,
     quantity: Quantity,
     classes: Option<Classes>,
+    /// There for RGBA samples.
+    rgba: Option<RgbaEncoding>,
 }
 
 impl Volume {
@@ -63,7 +70,10 @@ impl Volume {
                 .element(format!("voxel ({i}, {j}, {k})"))
                 .found(values[index].to_string()));
         }
-        Ok(Volume { grid, samples, rescale, quantity, classes: None })
+        let default =
+            RgbaEncoding { opacity_length_mm: grid.spacing_mm().min_element(), color: ColorEncoding::default() };
+        let rgba = samples.are_rgba().then_some(default);
+        Ok(Volume { grid, samples, rescale, quantity, classes: None, rgba })
     }
 
     /// Lattice and affine.
@@ -81,7 +91,7 @@ impl Volume {
         let [nx, ny, nz] = self.grid.dims();
         match &self.samples {
             Samples::I16(data) => ndarray::ArrayView3::from_shape((nz, ny, nx), data).ok(),
-            Samples::F32(_) => None,
+            _ => None,
         }
     }
 
@@ -109,7 +119,7 @@ impl Volume {
         self
     }
 
-    /// Value (HU for CT) at a lattice point, exact in f64. Panics outside the grid.
+    /// Value (HU for CT, alpha for an RGBA volume) at a lattice point, exact in f64. Panics outside the grid.
     pub fn value(&self, index: [usize; 3]) -> f64 {
         self.rescale.value(self.samples.stored(self.grid.flatten(index)))
     }

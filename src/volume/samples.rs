@@ -1,4 +1,4 @@
-//! Stored samples: 16-bit integers where the source allows, f32 only where it needs it.
+//! Stored samples: 16-bit integers where the source allows, f32 only where it needs it; colours with an opacity.
 
 /// Stored samples of a volume, x fastest, then y, then z.
 #[derive(Debug, Clone, PartialEq)]
@@ -7,6 +7,13 @@ pub enum Samples {
     I16(Vec<i16>),
     /// 32-bit float, for sources that 16-bit integers with one rescale cannot hold exactly.
     F32(Vec<f32>),
+    /// Red, green, blue and alpha of 8 bits, straight: a volume that is already classified ([`RgbaEncoding`]). Where a
+    /// number is asked for, it is alpha.
+    ///
+    /// [`RgbaEncoding`]: super::RgbaEncoding
+    Rgba8(Vec<[u8; 4]>),
+    /// The same in 16 bits.
+    Rgba16(Vec<[u16; 4]>),
 }
 
 /// The affine map `value = slope · stored + intercept` (DICOM PS3.3 C.11.1.1.2, for one pair per volume).
@@ -39,6 +46,8 @@ impl Samples {
         match self {
             Samples::I16(data) => data.len(),
             Samples::F32(data) => data.len(),
+            Samples::Rgba8(data) => data.len(),
+            Samples::Rgba16(data) => data.len(),
         }
     }
 
@@ -52,6 +61,22 @@ impl Samples {
         match self {
             Samples::I16(data) => size_of_val(data.as_slice()),
             Samples::F32(data) => size_of_val(data.as_slice()),
+            Samples::Rgba8(data) => size_of_val(data.as_slice()),
+            Samples::Rgba16(data) => size_of_val(data.as_slice()),
+        }
+    }
+
+    /// True for colours with an opacity.
+    pub fn are_rgba(&self) -> bool {
+        matches!(self, Samples::Rgba8(_) | Samples::Rgba16(_))
+    }
+
+    /// Red, green, blue and alpha in [0, 1] at a linear index, as stored: not decoded; `None` for numbers.
+    pub fn rgba(&self, index: usize) -> Option<[f64; 4]> {
+        match self {
+            Samples::I16(_) | Samples::F32(_) => None,
+            Samples::Rgba8(data) => Some(data[index].map(|x| f64::from(x) / f64::from(u8::MAX))),
+            Samples::Rgba16(data) => Some(data[index].map(|x| f64::from(x) / f64::from(u16::MAX))),
         }
     }
 
@@ -60,15 +85,17 @@ impl Samples {
         match self {
             Samples::I16(data) => f64::from(data[index]),
             Samples::F32(data) => f64::from(data[index]),
+            Samples::Rgba8(data) => f64::from(data[index][3]),
+            Samples::Rgba16(data) => f64::from(data[index][3]),
         }
     }
 
     /// Smallest and largest stored number; `[0, 0]` if empty.
     pub fn range(&self) -> [f64; 2] {
-        fn ends<T: Copy + PartialOrd + Into<f64>>(data: &[T]) -> [f64; 2] {
-            let Some(&first) = data.first() else { return [0.0, 0.0] };
+        fn ends<T: Copy + PartialOrd + Into<f64>>(mut data: impl Iterator<Item = T>) -> [f64; 2] {
+            let Some(first) = data.next() else { return [0.0, 0.0] };
             let (mut low, mut high) = (first, first);
-            for &v in data {
+            for v in data {
                 if v < low {
                     low = v;
                 }
@@ -79,8 +106,10 @@ impl Samples {
             [low.into(), high.into()]
         }
         match self {
-            Samples::I16(data) => ends(data),
-            Samples::F32(data) => ends(data),
+            Samples::I16(data) => ends(data.iter().copied()),
+            Samples::F32(data) => ends(data.iter().copied()),
+            Samples::Rgba8(data) => ends(data.iter().map(|texel| texel[3])),
+            Samples::Rgba16(data) => ends(data.iter().map(|texel| texel[3])),
         }
     }
 }

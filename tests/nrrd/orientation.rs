@@ -194,11 +194,6 @@ fn one_volume_of_scalars_is_read_from_arrays_with_more_axes() {
 
     let one = "the array is not one volume of scalars (sizes, kinds, space directions): found ";
     for (size, lines, expected) in [
-        (
-            "3 3 2 2",
-            format!("{space}space directions: none {steps}\nkinds: RGB-color domain domain domain\n"),
-            "3 (RGB-color) x 3 x 2 x 2, expected one value at each point",
-        ),
         ("3 2 2 5", time.to_owned(), "3 x 2 x 2 x 5 (time), expected one value at each point"),
         ("3 2 2 2", "spacings: 1 1 1 1\n".to_owned(), "3 x 2 x 2 x 2, expected three spatial axes"),
         (

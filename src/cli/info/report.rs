@@ -35,7 +35,7 @@ pub(super) struct VolumeReport {
     pub(super) spacing_mm: [f64; 3],
     /// Smallest and largest value.
     pub(super) value_range: [f64; 2],
-    /// What the values measure: `hu` or `arbitrary`.
+    /// What the values measure: `hu` or `arbitrary`; `rgba` where they are the alphas of colours.
     pub(super) quantity: &'static str,
     /// SHA-256 of the values.
     pub(super) values_sha256: String,
@@ -116,6 +116,7 @@ impl From<&Volume> for VolumeReport {
             spacing_mm: volume.grid().spacing_mm().to_array(),
             value_range: volume.value_range(),
             quantity: match volume.quantity() {
+                _ if volume.samples().are_rgba() => "rgba",
                 Quantity::Hu => "hu",
                 Quantity::Arbitrary => "arbitrary",
             },

@@ -39,7 +39,11 @@ fn volume_rows(volume: &VolumeReport) -> Vec<(String, String)> {
     let [nx, ny, nz] = volume.dims;
     let [sx, sy, sz] = volume.spacing_mm;
     let [low, high] = volume.value_range;
-    let unit = if volume.quantity == "hu" { " HU" } else { ", not known to be HU" };
+    let values = match volume.quantity {
+        "rgba" => format!("colours with an alpha of {low} to {high}"),
+        "hu" => format!("{low} to {high} HU"),
+        _ => format!("{low} to {high}, not known to be HU"),
+    };
     let [x, y, z] = volume.index_to_lps_mm.map(|row| row[3]);
     let rows = [
         ("dimensions", format!("{nx} x {ny} x {nz} voxels")),
@@ -54,7 +58,7 @@ fn volume_rows(volume: &VolumeReport) -> Vec<(String, String)> {
                 .join(", "),
         ),
         ("first voxel", format!("({x:.3}, {y:.3}, {z:.3}) mm, LPS")),
-        ("values", format!("{low} to {high}{unit}")),
+        ("values", values),
         ("values SHA-256", volume.values_sha256.clone()),
     ];
     rows.map(|(label, text)| (label.to_string(), text)).to_vec()

@@ -23,16 +23,19 @@ mod shown;
 mod splits;
 mod toward_light;
 mod values;
+mod voxels;
 
 use crate::classify::{Baked, BakedAlike, OneD, TwoD, bake, bake_alike};
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::plan::Exact;
-use crate::scene::{Model, Ray, Scene, Shading};
+use crate::scene::{ClassifyAt, Model, Ray, Scene, Shading};
 use crate::volume::{Samples, Volume};
 
+use super::classify_voxels::classify_voxels;
 use super::light_volumes::LightVolumes;
+use super::texels::{Component, Rgba};
 use super::tiles::{self, Radiance};
 use super::{Rendered, Statistics};
 use depth::Extinction;
@@ -100,12 +103,26 @@ pub trait Tracer: Sync {
     fn kernel(&self) -> &str;
 }
 
-/// The exact integrator for a scene, within `tolerance` of a channel of a pixel.
+/// The exact integrator for a scene, within `tolerance` of a channel of a pixel. An RGBA volume shows its light, whatever
+/// else the scene asks for; [`render`](super::render) refuses what an RGBA volume cannot show.
 pub fn tracer<'a>(volume: &'a Volume, scene: &'a Scene, tolerance: f64, precision: Precision) -> Box<dyn Tracer + 'a> {
     match volume.samples() {
         Samples::I16(samples) => for_samples(volume, scene, samples, tolerance, precision),
         Samples::F32(samples) => for_samples(volume, scene, samples, tolerance, precision),
+        Samples::Rgba8(texels) => for_colors(volume, scene, texels, tolerance),
+        Samples::Rgba16(texels) => for_colors(volume, scene, texels, tolerance),
     }
+}
+
+fn for_colors<'a, T: Component>(
+    volume: &'a Volume,
+    scene: &'a Scene,
+    texels: &'a [[T; 4]],
+    tolerance: f64,
+) -> Box<dyn Tracer + 'a> {
+    let Some(encoding) = volume.rgba_encoding() else { unreachable!("colours are understood in some way") };
+    let name = format!("exact/{}/unlit/f64", T::NAME);
+    voxels::tracer(volume.grid(), &scene.effects.clip, Rgba::new(texels, encoding), tolerance, name)
 }
 
 fn for_samples<'a, V: Voxel>(
@@ -119,6 +136,12 @@ fn for_samples<'a, V: Voxel>(
     let shown = Shown::new(volume, scene);
     let rescale = volume.rescale();
     match &scene.model {
+        Model::Light if scene.effects.classify == ClassifyAt::Voxels => {
+            let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
+            let lit = if scene.shading.is_some() { "lit" } else { "unlit" };
+            let name = format!("exact/voxels/{classifier}/{lit}/f64");
+            return voxels::tracer(volume.grid(), &scene.effects.clip, classify_voxels(volume, scene), tolerance, name);
+        }
         Model::Value(model) if !model.of.reads_transfer_function() => {
             let trace = move |ray: &Ray| models::show_value(&lattice, &shown, rescale, model, ray);
             return Box::new(Direct { trace, name: format!("exact/{}/{}/f64", V::NAME, model.of.name()) });

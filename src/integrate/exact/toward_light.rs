@@ -28,6 +28,7 @@ pub(in super::super) fn toward_light<'a>(volume: &'a Volume, scene: &'a Scene) -
     match volume.samples() {
         Samples::I16(samples) => for_samples(volume, scene, samples),
         Samples::F32(samples) => for_samples(volume, scene, samples),
+        Samples::Rgba8(_) | Samples::Rgba16(_) => unreachable!("colours have no values, and are refused"),
     }
 }
 

@@ -18,6 +18,7 @@ mod medium;
 mod number;
 mod probe;
 mod surfaces;
+mod voxels;
 
 pub(super) use by_place::{ByPlace, Masked};
 pub(super) use jitter::hash;
@@ -25,6 +26,7 @@ pub(super) use kernel::Kernel;
 pub(super) use medium::Classified;
 pub(super) use number::show_number;
 pub(super) use surfaces::show_surfaces;
+pub(super) use voxels::AtVoxels;
 
 use crate::error::{Error, Fault, Result};
 use crate::plan::{Emission, March};

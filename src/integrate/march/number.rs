@@ -23,6 +23,7 @@ pub(in super::super) fn show_number(frame: &Frame<'_>, settings: &March, model: 
     match frame.volume.samples() {
         Samples::I16(voxels) => by_number(frame, settings, model, voxels),
         Samples::F32(voxels) => by_number(frame, settings, model, voxels),
+        Samples::Rgba8(_) | Samples::Rgba16(_) => unreachable!("colours have no values, and are refused"),
     }
 }
 

@@ -20,6 +20,7 @@ pub(in super::super) fn show_surfaces(frame: &Frame<'_>, settings: &March, surfa
     match frame.volume.samples() {
         Samples::I16(voxels) => show(frame, settings, surfaces, voxels),
         Samples::F32(voxels) => show(frame, settings, surfaces, voxels),
+        Samples::Rgba8(_) | Samples::Rgba16(_) => unreachable!("colours have no values, and are refused"),
     }
 }
 

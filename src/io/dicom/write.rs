@@ -79,6 +79,9 @@ fn stored_values(volume: &Volume) -> Result<(Vec<i16>, Rescale)> {
             }
             Ok((values.iter().map(|value| value_of(value) as i16).collect(), Rescale::IDENTITY))
         }
+        Samples::Rgba8(_) | Samples::Rgba16(_) => Err(Error::new(Fault::Unsupported, "a CT series holds values")
+            .found("colours with an opacity")
+            .remedy("write NRRD, which holds them")),
     }
 }
 

@@ -19,6 +19,7 @@ mod lines;
 mod orientation;
 mod parse;
 mod read;
+mod rgba;
 mod source;
 mod space;
 mod storage;
@@ -37,7 +38,7 @@ pub use write::write;
 
 use crate::error::Result;
 use crate::io::{FileFate, Scan};
-use crate::volume::{Quantity, Volume};
+use crate::volume::{Quantity, Rescale, Volume};
 
 /// What a file holds, as it stands there.
 #[derive(Debug, Clone)]
@@ -70,7 +71,8 @@ pub fn read_array(path: &Path) -> Result<Array> {
     read::array(path, None)
 }
 
-/// Reads a volume of scalars: three spatial axes, and others only if they have one sample.
+/// Reads a volume of scalars or of colours with an opacity: three spatial axes, perhaps one of kind `RGBA-color`, and others
+/// only if they have one sample.
 ///
 /// Values of signed and floating-point types of 16 bits and more are taken for HU, those of 8-bit and unsigned types
 /// are not; [`Volume::with_quantity`] overrides that.
@@ -94,7 +96,11 @@ pub fn read_within(path: &Path, max_bytes: Option<u64>) -> Result<Scan> {
     let Array { header, elements, mut warnings, files } = read::array(path, max_bytes)?;
     let reading_bytes = read::most_bytes(&header);
     warnings.append(&mut assumptions);
-    let (samples, rescale) = storage::samples(elements, &mut warnings).map_err(|error| error.at(path))?;
+    let (samples, rescale) = match rgba::samples(&header, &elements) {
+        Some(samples) => samples.map(|samples| (samples, Rescale::IDENTITY)),
+        None => storage::samples(elements, &mut warnings),
+    }
+    .map_err(|error| error.at(path))?;
     let volume = Volume::new(grid, samples, rescale, quantity(header.element_type)).map_err(|error| error.at(path))?;
     Ok(Scan { facts: facts(&header, &volume, files.len()), volume, warnings, files, reading_bytes })
 }

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::header::{Axis, Center, Header};
+use super::rgba;
 use super::space::{Frame, Space};
 use crate::error::{Error, Fault, Result};
 use crate::volume::Grid;
@@ -13,7 +14,7 @@ const SPACING_TOLERANCE: f64 = 1e-3;
 /// Where the elements of a volume lie in the patient, with what had to be assumed.
 ///
 /// # Errors
-/// `Fault::Unsupported` for an array that is not one volume of scalars, `Fault::Geometry` for axes without a usable
+/// `Fault::Unsupported` for an array that is not one volume of scalars or of RGBA colours, `Fault::Geometry` for axes without a usable
 /// spacing or that do not span space. The caller names the file.
 pub(super) fn grid(header: &Header, warnings: &mut Vec<String>) -> Result<Grid> {
     let axes = spatial_axes(header)?;
@@ -34,7 +35,8 @@ pub(super) fn grid(header: &Header, warnings: &mut Vec<String>) -> Result<Grid> 
     Grid::new(axes.map(|axis| axis.size), DAffine3::from_mat3_translation(steps, origin))
 }
 
-/// The three axes that extend in space. Others may only be there with one sample.
+/// The three axes that extend in space. Others may only be there with one sample, or hold the components of a colour with
+/// an opacity.
 fn spatial_axes(header: &Header) -> Result<[&Axis; 3]> {
     let oriented = header.axes.iter().any(|axis| axis.direction.is_some());
     let is_spatial = |axis: &Axis| match axis.kind {
@@ -45,8 +47,12 @@ fn spatial_axes(header: &Header) -> Result<[&Axis; 3]> {
     };
     let (spatial, other): (Vec<&Axis>, Vec<&Axis>) = header.axes.iter().partition(|axis| is_spatial(axis));
     match <[&Axis; 3]>::try_from(spatial) {
-        Ok(axes) if other.iter().all(|axis| axis.size == 1) => Ok(axes),
-        Ok(_) => Err(not_a_volume(header, "one value at each point")),
+        Ok(axes) => match other.iter().filter(|axis| axis.size > 1).collect::<Vec<_>>()[..] {
+            [] => Ok(axes),
+            [components] if rgba::holds_components(components) => Ok(axes),
+            [components] if rgba::may_hold_components(components) => Err(rgba::without_opacity(header)),
+            _ => Err(not_a_volume(header, "one value at each point")),
+        },
         Err(_) => Err(not_a_volume(header, "three spatial axes")),
     }
 }

@@ -19,7 +19,8 @@ const CHUNK_VALUES: usize = 1 << 14;
 /// Writes a volume, its values exactly; little-endian, LPS, in mm, with key/value pairs of the caller's.
 ///
 /// The type is the smallest that holds every value and that [`read`](super::read) takes for the same quantity: int16,
-/// int32, float or double for HU, and uint8 or uint16 before these for others.
+/// int32, float or double for HU, and uint8 or uint16 before these for others. Colours are written as they are stored, with
+/// their components along the first axis.
 ///
 /// # Errors
 /// `Fault::Output` if the file cannot be written, or a key or value cannot stand in a header.
@@ -48,13 +49,18 @@ pub fn write(path: &Path, volume: &Volume, encoding: Encoding, key_values: &[(St
 
 /// The smallest type that holds every value exactly.
 fn element_type(volume: &Volume) -> ElementType {
+    match volume.samples() {
+        Samples::Rgba8(_) => return ElementType::U8,
+        Samples::Rgba16(_) => return ElementType::U16,
+        Samples::I16(_) | Samples::F32(_) => {}
+    }
     let rescale = volume.rescale();
     let values = || (0..volume.samples().len()).map(|index| rescale.value(volume.samples().stored(index)));
     let [low, high] = volume.value_range();
     let fits = |from: f64, to: f64| from <= low && high <= to;
     let integers = match volume.samples() {
         Samples::I16(_) => rescale.slope.fract() == 0.0 && rescale.intercept.fract() == 0.0,
-        Samples::F32(_) => false,
+        _ => false,
     };
     let unsigned = integers && volume.quantity() == Quantity::Arbitrary;
     match integers {
@@ -77,14 +83,17 @@ fn header(
     let affine = volume.grid().index_to_lps_mm();
     let vector = |v: glam::DVec3| format!("({},{},{})", v.x, v.y, v.z);
     let steps = affine.matrix3;
+    // Dimension, and what stands before the three axes of space in sizes, directions and kinds.
+    let [dimension, size, direction, kind] =
+        if volume.samples().are_rgba() { ["4", "4 ", "none ", "RGBA-color "] } else { ["3", "", "", ""] };
     let mut header = format!(
         "NRRD0004\n\
          type: {}\n\
-         dimension: 3\n\
+         dimension: {dimension}\n\
          space: left-posterior-superior\n\
-         sizes: {nx} {ny} {nz}\n\
-         space directions: {} {} {}\n\
-         kinds: domain domain domain\n\
+         sizes: {size}{nx} {ny} {nz}\n\
+         space directions: {direction}{} {} {}\n\
+         kinds: {kind}domain domain domain\n\
          endian: little\n\
          encoding: {}\n\
          space origin: {}\n",
@@ -129,6 +138,15 @@ fn with_escapes(text: &str) -> String {
 fn binary(volume: &Volume, element_type: ElementType, file: &mut impl Write) -> io::Result<()> {
     let rescale = volume.rescale();
     let samples = volume.samples();
+    match samples {
+        Samples::Rgba8(texels) => return file.write_all(texels.as_flattened()),
+        Samples::Rgba16(texels) => {
+            return texels.chunks(CHUNK_VALUES).try_for_each(|chunk| {
+                file.write_all(&chunk.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<_>>())
+            });
+        }
+        Samples::I16(_) | Samples::F32(_) => {}
+    }
     let mut bytes = Vec::with_capacity(CHUNK_VALUES * element_type.bytes());
     for start in (0..samples.len()).step_by(CHUNK_VALUES) {
         bytes.clear();
@@ -154,9 +172,17 @@ fn text(volume: &Volume, file: &mut BufWriter<File>) -> io::Result<()> {
     let row = volume.grid().dims()[0];
     for index in 0..volume.samples().len() {
         let end = if (index + 1).is_multiple_of(row) { '\n' } else { ' ' };
-        write!(file, "{}{end}", volume.rescale().value(volume.samples().stored(index)))?;
+        match volume.samples() {
+            Samples::Rgba8(texels) => components(texels[index], end, file)?,
+            Samples::Rgba16(texels) => components(texels[index], end, file)?,
+            samples => write!(file, "{}{end}", volume.rescale().value(samples.stored(index)))?,
+        }
     }
     Ok(())
+}
+
+fn components<T: std::fmt::Display>([r, g, b, alpha]: [T; 4], end: char, file: &mut impl Write) -> io::Result<()> {
+    write!(file, "{r} {g} {b} {alpha}{end}")
 }
 
 /// Writes each byte as two hexadecimal digits, 40 bytes in a line.

@@ -11,8 +11,8 @@ pub(super) use describe::{effects_json, in_words};
 pub(super) use scattering::scatters;
 
 use crate::error::Result;
-use crate::scene::{Background, Camera, Effects, Projection, Shading};
-use crate::spec::{Color, Spec};
+use crate::scene::{Background, Camera, ClassifyAt, Effects, Projection, Shading};
+use crate::spec::{ClassifyAtName, Color, Spec};
 use crate::volume::Grid;
 
 use super::{Omission, clip};
@@ -52,6 +52,10 @@ pub(super) fn resolve(spec: &Spec, surroundings: &Surroundings<'_>) -> Result<Re
     let mut resolved = Resolved::default();
     resolved.effects = Effects {
         clip: clip::resolve(spec, surroundings.grid),
+        classify: match written.classify {
+            None | Some(ClassifyAtName::Samples) => ClassifyAt::Samples,
+            Some(ClassifyAtName::Voxels) => ClassifyAt::Voxels,
+        },
         depth_cue: resolved.keep(depth_cue::resolve(written.depth_cue.as_ref(), surroundings), "depth cue"),
         shadows: resolved.keep(shadows::resolve(written.shadows.as_ref(), surroundings), "shadows"),
         scattering: resolved.keep(scattering::resolve(&written), "scattering"),

@@ -55,6 +55,11 @@ pub enum ClassifyAt {
     /// At each point, from the interpolated value and gradient magnitude (post-classification).
     #[default]
     Samples,
-    /// At the lattice points, shaded there too; extinction and emission are interpolated (Levoy 1988).
+    /// At the lattice points (pre-classification, Levoy 1988): there the transfer function is evaluated with the value and
+    /// the gradient magnitude, shaded by the gradient, on the ray from the eye to that point ([`Camera::direction_to`]).
+    /// Extinction `σ` and shaded emission `q` are interpolated trilinearly, as those of an RGBA volume are. What a
+    /// transfer function shows between the values of two neighbouring voxels is then not seen: it is their model's error.
+    ///
+    /// [`Camera::direction_to`]: crate::scene::Camera::direction_to
     Voxels,
 }

@@ -2,10 +2,11 @@
 
 use super::clip::check_clip;
 use super::light::{check_directions, check_effects_of_light};
+use super::pipeline::is_nrrd;
 use super::show::{check_marched, check_projection, check_transport, reads_transfer_function};
 use super::{Check, join};
 use crate::error::Result;
-use crate::spec::{EffectsSpec, Pipeline};
+use crate::spec::{ClassifyAtName, EffectsSpec, PhantomSpec, Pipeline, VolumeSpec};
 
 /// Light needs a transfer function; numbers of the values, and surfaces, have no use for one, nor numbers for shading.
 pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<()> {
@@ -18,6 +19,7 @@ pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<
     check.unread("transfer_function", written && !read, why)?;
     check.unread("effects.shading", effects.shading.is_some() && project, "a number of the values has no light")?;
     check_transport(check, &effects)?;
+    let at_voxels = effects.classify == Some(ClassifyAtName::Voxels);
     let needs_light = [
         ("depth_cue", effects.depth_cue.is_some(), true),
         ("fog", effects.fog.is_some(), true),
@@ -29,9 +31,23 @@ pub(super) fn check_what_shows(check: Check<'_>, pipeline: &Pipeline) -> Result<
         let path = join("effects", effect);
         check.unread(&path, given && project, "a number of the values has no light")?;
         check.unread(&path, given && surfaces && !on_surfaces, "between surfaces nothing absorbs or scatters")?;
+        check.unread(&path, given && at_voxels, "effects.classify: voxels shades at the voxels, and nothing else")?;
+    }
+    let classify = "effects.classify";
+    check.unread(classify, effects.classify.is_some() && (project || surfaces), "there is no transfer function")?;
+    if may_have_colors(&pipeline.volume) {
+        return check_marched(check, pipeline);
     }
     check_marched(check, pipeline)?;
     check.require("transfer_function", written || !read, "at least one layer")
+}
+
+/// True if the volume may have colours of its own in place of values; what it has is known once it is read.
+fn may_have_colors(volume: &VolumeSpec) -> bool {
+    match (&volume.phantom, volume.source.as_deref()) {
+        (Some(phantom), _) => matches!(phantom, PhantomSpec::Rings(_)),
+        (None, source) => source.is_some_and(is_nrrd),
+    }
 }
 
 pub(super) fn check_effects(check: Check<'_>, effects: &EffectsSpec) -> Result<()> {

@@ -51,6 +51,11 @@ fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
+/// True for the name of a NRRD file.
+pub(super) fn is_nrrd(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "nrrd" | "nhdr")
+}
+
 fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
     let sources = [
         ("source", volume.source.is_some()),
@@ -61,18 +66,17 @@ fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
     if let Some(analytic) = &volume.analytic {
         check_analytic(check, "volume.analytic", analytic)?;
     }
-    if let Some(PhantomSpec::Head(head)) = &volume.phantom {
-        let size = head.size.map(f64::from);
-        check.require(
-            "volume.phantom.head.size",
-            size.is_none_or(|n| (2.0..=1024.0).contains(&n)),
-            "2 to 1024 voxels",
-        )?;
-    }
+    let (path, size) = match &volume.phantom {
+        Some(PhantomSpec::Head(head)) => ("volume.phantom.head.size", head.size),
+        Some(PhantomSpec::Rings(rings)) => ("volume.phantom.rings.size", rings.size),
+        None => ("volume.phantom", None),
+    };
+    check.require(path, size.is_none_or(|n| (2..=1024).contains(&n)), "2 to 1024 voxels")?;
+    check.above_zero("volume.opacity_length_mm", volume.opacity_length_mm)?;
     let has_series = volume.series.is_some();
     check.unread("volume.series", has_series && volume.phantom.is_some(), "a phantom has no series")?;
     check.unread("volume.series", has_series && volume.analytic.is_some(), "a formula has no series")?;
-    let is_file = volume.source.as_deref().is_some_and(|p| matches!(extension(p).as_str(), "nrrd" | "nhdr"));
+    let is_file = volume.source.as_deref().is_some_and(is_nrrd);
     check.unread("volume.series", has_series && is_file, "a NRRD file has no series")?;
     let contradiction = volume.values == Some(ValuesName::Arbitrary) && volume.shift_hu.is_some();
     check.unread("volume.shift_hu", contradiction, "the values are said to be arbitrary, not HU")

@@ -49,6 +49,9 @@ pub struct EffectsSpec {
     /// Fog as a medium that fills the space in front of the volume, in it and behind it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub haze: Option<HazeSpec>,
+    /// Where the transfer function is evaluated; `samples` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub classify: Option<ClassifyAtName>,
     /// Shows one number of what lies along each ray as a grey, instead of light.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub project: Option<ProjectSpec>,
@@ -56,4 +59,14 @@ pub struct EffectsSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub surfaces: Option<Vec<SurfaceSpec>>,
+}
+
+/// Where the transfer function is evaluated; see [`crate::scene::ClassifyAt`] for its definition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClassifyAtName {
+    /// At each point of a ray, from the interpolated value and gradient magnitude.
+    Samples,
+    /// At the voxels, shaded there too, as Levoy did; extinction and emission are interpolated.
+    Voxels,
 }

@@ -22,6 +22,7 @@ pub use triangle::Triangle;
 
 use super::{Curve, Knot, Optics, Term, Weight};
 use crate::error::{Error, Fault, Result};
+pub use crate::math::extinction_per_mm;
 
 /// A factor between 0 and 1 over value (HU) and gradient magnitude (HU/mm).
 ///
@@ -97,13 +98,6 @@ impl Shape {
     }
 }
 
-/// Extinction (1/mm) of what has this opacity over `length_mm`: `-ln(1 - α) / length`, with α at most 1 − 2⁻²⁴ so that
-/// what is said to be opaque absorbs all that 24 bits can show and the extinction stays finite.
-pub fn extinction_per_mm(opacity: f64, length_mm: f64) -> f64 {
-    const MOST: f64 = 1.0 - 1.0 / (1 << 24) as f64;
-    -(-opacity.clamp(0.0, MOST)).ln_1p() / length_mm
-}
-
 fn trapezoid_at(x: f64, [a, b, c, d]: [f64; 4]) -> f64 {
     if x < a || x >= d {
         0.0
@@ -139,20 +133,4 @@ fn limit_rows(rows: f64) -> Result<usize> {
         .found(format!("{rows:.0} rows"))
         .expected(format!("at most {MOST_ROWS}"))
         .remedy("raise max_deviation or edge, or narrow gradient_hu_per_mm"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn opacity_becomes_extinction_and_full_opacity_stays_finite() {
-        assert_eq!(extinction_per_mm(0.0, 1.0), 0.0);
-        let half = extinction_per_mm(0.5, 2.0);
-        assert!((half - 0.5 * std::f64::consts::LN_2).abs() < 1e-16, "found {half}");
-        let opaque = extinction_per_mm(1.0, 1.0);
-        assert!((opaque - 24.0 * std::f64::consts::LN_2).abs() < 1e-6, "24 bits of it: found {opaque}");
-        let tiny = extinction_per_mm(1e-18, 1.0);
-        assert_eq!(tiny, 1e-18, "no cancellation");
-    }
 }
