@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::dicom::{self, SeriesChoice};
+use super::dicom::{self, SeriesChoice, SliceSpacing};
 use super::{Scan, nrrd};
 use crate::error::{Error, Fault, Result};
 
@@ -29,8 +29,16 @@ const UNSUPPORTED: [(&str, &str); 8] = [
 /// `Fault::Input` for a path that is missing or unreadable, `Fault::Unsupported` for a format that is not read here, and
 /// whatever the reader finds.
 pub fn load(path: &Path, series: &SeriesChoice) -> Result<Scan> {
+    load_spaced(path, series, SliceSpacing::Even)
+}
+
+/// The same for DICOM slices whose spacing may change; the slices of a NRRD have one.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_spaced(path: &Path, series: &SeriesChoice, spacing: SliceSpacing) -> Result<Scan> {
     match format_of(path)? {
-        Format::Dicom => dicom::read(path, series, None),
+        Format::Dicom => dicom::read_spaced(path, series, spacing, None),
         Format::Nrrd => nrrd::read(path),
     }
 }

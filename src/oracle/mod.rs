@@ -160,6 +160,7 @@ impl<'a> Oracle<'a> {
         let mut light = Light::default();
         let mut splits = Splits::default();
         let path = Path::new(self.volume.grid(), ray, from_mm, to_mm);
+        let path = path.map(|path| path.through(self.volume.slices()));
         for passage in path.iter().flat_map(Path::passages) {
             let shaded = self.scene.shading.is_some();
             if let Some(fields) = Fields::new(self.volume, &self.patches, shaded, &passage) {

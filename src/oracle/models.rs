@@ -71,6 +71,7 @@ pub(super) fn surfaces(oracle: &Oracle<'_>, surfaces: &[Surface], ray: &Ray) -> 
 
 fn passages<'a>(oracle: &'a Oracle<'_>, ray: &Ray) -> impl Iterator<Item = (Passage, Cubic)> + 'a {
     let path = Path::new(oracle.volume.grid(), ray, 0.0, f64::INFINITY);
+    let path = path.map(|path| path.through(oracle.volume.slices()));
     path.into_iter().flat_map(|path| path.passages().collect::<Vec<_>>()).map(|passage| {
         let values = Cell::new(oracle.volume, passage.cell).values();
         (passage, along(&values, &passage))

@@ -3,12 +3,14 @@
 use glam::DVec3;
 
 use crate::scene::Ray;
-use crate::volume::Grid;
+use crate::volume::{Grid, Slices};
 
 /// A ray inside the domain, in voxel indices.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Path {
+pub(super) struct Path<'a> {
     dims: [usize; 3],
+    /// Places of slices at uneven distances.
+    slices: Option<&'a [f64]>,
     /// Index at parameter 0.
     origin: DVec3,
     /// Index steps per mm.
@@ -30,9 +32,9 @@ pub(super) struct Passage {
     pub(super) length_mm: f64,
 }
 
-impl Path {
+impl<'a> Path<'a> {
     /// The part of a ray between `from_mm` and `to_mm` that lies in the domain, or `None` if it is empty or a point.
-    pub(super) fn new(grid: &Grid, ray: &Ray, from_mm: f64, to_mm: f64) -> Option<Path> {
+    pub(super) fn new(grid: &Grid, ray: &Ray, from_mm: f64, to_mm: f64) -> Option<Self> {
         // The parameter is counted from the point next to the domain's centre, so that a far origin costs no digits.
         let center_mm = (grid.center_mm() - ray.origin_mm).dot(ray.direction);
         let corner = grid.index_to_lps_mm().translation;
@@ -56,12 +58,18 @@ impl Path {
             first = first.max(x.min(y));
             last = last.min(x.max(y));
         }
-        (first < last).then_some(Path { dims: grid.dims(), origin, step_per_mm, ends_mm: [first, last] })
+        (first < last).then_some(Path { dims: grid.dims(), slices: None, origin, step_per_mm, ends_mm: [first, last] })
+    }
+
+    /// The same path through a lattice whose slices lie at these places.
+    pub(super) fn through(mut self, slices: Option<&'a Slices>) -> Self {
+        self.slices = slices.map(Slices::positions);
+        self
     }
 
     /// The cells in order. Each crossing of a face is computed from the origin, never from the crossing before it.
     pub(super) fn passages(&self) -> impl Iterator<Item = Passage> + '_ {
-        let mut faces: [Faces; 3] = std::array::from_fn(|a| Faces::new(self, a));
+        let mut faces: [Faces<'_>; 3] = std::array::from_fn(|a| Faces::new(self, a));
         let [mut here, end] = self.ends_mm;
         std::iter::from_fn(move || {
             while here < end {
@@ -88,12 +96,26 @@ impl Path {
             }
             // The middle decides: it is as far from the faces as the path gets. Cells are half-open, the last is closed.
             let highest = self.dims[a] - 2;
-            let cell = self.index(middle, a).floor().clamp(0.0, highest as f64);
-            passage.cell[a] = cell as usize;
-            passage.entry[a] = (self.index(from_mm, a) - cell).clamp(0.0, 1.0);
-            passage.exit[a] = (self.index(to_mm, a) - cell).clamp(0.0, 1.0);
+            let (cell, low, height) = match self.slices_across(a) {
+                None => {
+                    let cell = self.index(middle, a).floor().clamp(0.0, highest as f64);
+                    (cell as usize, cell, 1.0)
+                }
+                Some(places) => {
+                    let below = places.iter().filter(|&&place| place <= self.index(middle, a)).count();
+                    let cell = below.clamp(1, highest + 1) - 1;
+                    (cell, places[cell], places[cell + 1] - places[cell])
+                }
+            };
+            passage.cell[a] = cell;
+            passage.entry[a] = ((self.index(from_mm, a) - low) / height).clamp(0.0, 1.0);
+            passage.exit[a] = ((self.index(to_mm, a) - low) / height).clamp(0.0, 1.0);
         }
         passage
+    }
+
+    fn slices_across(&self, axis: usize) -> Option<&'a [f64]> {
+        self.slices.filter(|_| axis == 2)
     }
 
     fn index(&self, s_mm: f64, axis: usize) -> f64 {
@@ -118,20 +140,27 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// The faces across one axis that lie ahead.
 #[derive(Debug, Clone, Copy)]
-struct Faces {
+struct Faces<'a> {
+    slices: Option<&'a [f64]>,
     origin: f64,
     step_per_mm: f64,
-    index: f64,
+    /// Number of the next face; beyond the lattice there is none.
+    number: f64,
     next_mm: f64,
 }
 
-impl Faces {
-    fn new(path: &Path, axis: usize) -> Self {
+impl<'a> Faces<'a> {
+    fn new(path: &Path<'a>, axis: usize) -> Self {
         let (origin, step_per_mm) = (path.origin[axis], path.step_per_mm[axis]);
-        let mut faces = Faces { origin, step_per_mm, index: 0.0, next_mm: f64::INFINITY };
+        let slices = path.slices_across(axis);
+        let mut faces = Faces { slices, origin, step_per_mm, number: 0.0, next_mm: f64::INFINITY };
         if path.dims[axis] > 1 && step_per_mm != 0.0 {
-            // One face too early, whatever the rounding; `pass` leaves behind what is not ahead.
-            faces.index = path.index(path.ends_mm[0], axis).round() - 2.0 * step_per_mm.signum();
+            // Too early, whatever the rounding; `pass` leaves behind what is not ahead.
+            faces.number = match slices {
+                None => path.index(path.ends_mm[0], axis).round() - 2.0 * step_per_mm.signum(),
+                Some(_) if step_per_mm > 0.0 => 0.0,
+                Some(places) => (places.len() - 1) as f64,
+            };
             faces.next_mm = faces.crossing_mm();
             faces.pass(path.ends_mm[0]);
         }
@@ -139,13 +168,18 @@ impl Faces {
     }
 
     fn crossing_mm(&self) -> f64 {
-        (self.index - self.origin) / self.step_per_mm
+        let index = match self.slices {
+            None => self.number,
+            Some(places) if self.number >= 0.0 => places.get(self.number as usize).copied().unwrap_or(f64::INFINITY),
+            Some(_) => f64::NEG_INFINITY,
+        };
+        (index - self.origin) / self.step_per_mm
     }
 
     /// Leaves all faces up to `s_mm` behind.
     fn pass(&mut self, s_mm: f64) {
         while self.next_mm <= s_mm {
-            self.index += self.step_per_mm.signum();
+            self.number += self.step_per_mm.signum();
             self.next_mm = self.crossing_mm();
         }
     }
@@ -155,13 +189,13 @@ impl Faces {
 mod tests {
     use super::*;
 
-    fn path(dims: [usize; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<Path> {
+    fn path(dims: [usize; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<Path<'static>> {
         let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();
         let ray = Ray { origin_mm: origin.into(), direction: DVec3::from_array(direction).normalize() };
         Path::new(&grid, &ray, 0.0, f64::INFINITY)
     }
 
-    fn cells(path: &Path) -> Vec<[usize; 3]> {
+    fn cells(path: &Path<'_>) -> Vec<[usize; 3]> {
         path.passages().map(|p| p.cell).collect()
     }
 

@@ -2,8 +2,8 @@
 
 use super::analytic;
 use crate::error::Result;
-use crate::io::{self, Scan, dicom::SeriesChoice};
-use crate::spec::{PhantomHead, PhantomSpec, Series, Spec, VolumeSource};
+use crate::io::{self, Scan, dicom::SeriesChoice, dicom::SliceSpacing};
+use crate::spec::{PhantomHead, PhantomSpec, Series, SlicesName, Spec, VolumeSource};
 use crate::synthetic::{self, HeadPhantom};
 
 /// Reads or makes the volume of a spec, its values understood as the spec says.
@@ -12,7 +12,7 @@ use crate::synthetic::{self, HeadPhantom};
 /// As [`io::load`] and [`synthetic::head`], and `Fault::Spec` for a formula that cannot be read or sampled.
 pub fn load(spec: &Spec) -> Result<Scan> {
     let scan = match spec.volume_source() {
-        VolumeSource::File { path, series } => io::load(&path, &choice(series))?,
+        VolumeSource::File { path, series, slices } => io::load_spaced(&path, &choice(series), spacing(slices))?,
         VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head)?,
         VolumeSource::Analytic(formula) => analytic::load(spec, &formula)?,
     };
@@ -23,6 +23,13 @@ fn choice(series: Option<Series>) -> SeriesChoice {
     match series {
         None | Some(Series::Largest) => SeriesChoice::Largest,
         Some(Series::Uid(uid)) => SeriesChoice::Named(uid),
+    }
+}
+
+fn spacing(slices: Option<SlicesName>) -> SliceSpacing {
+    match slices {
+        None | Some(SlicesName::Even) => SliceSpacing::Even,
+        Some(SlicesName::Uneven) => SliceSpacing::Uneven,
     }
 }
 

@@ -76,11 +76,11 @@ impl Plan {
             background: light.background,
             effects: effects::resolve(spec),
         };
-        let method = integrator::resolve(spec, &volume.grid);
+        let method = integrator::resolve(spec, volume);
         let demand = Demand {
             gradient: scene.shading.is_some(),
             gradient_magnitude: scene.transfer_function.reads_gradient(),
-            macrocells: matches!(method, Method::March(_)),
+            macrocells: matches!(method, Method::March(_)) && volume.uneven_slices_mm.is_none(),
         };
         let mut plan = Plan {
             scene,
@@ -94,7 +94,7 @@ impl Plan {
             warnings: Vec::new(),
         };
         plan.stages = stages::computed(&plan, volume);
-        plan.not_computed = stages::not_computed(&plan, spec);
+        plan.not_computed = stages::not_computed(&plan, spec, volume);
         plan.warnings = warnings::of(&plan, spec, volume);
         Ok(plan)
     }

@@ -34,7 +34,7 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     let mut stages =
         vec![Stage { name: "volume", what: describe_volume(volume), bytes: voxels * volume.storage.bytes() }];
     let mut field = |what: &str, bytes| stages.push(Stage { name: "field", what: what.to_owned(), bytes });
-    if plan.demand.gradient_magnitude && plan.demand.macrocells {
+    if plan.demand.gradient_magnitude && matches!(plan.method, Method::March(_)) {
         field("gradient magnitude at the voxels, by central differences, f32", 4 * voxels);
     } else if plan.demand.gradient_magnitude {
         field("gradient magnitude at corners of lit cells, by central differences, not stored", 0);
@@ -71,9 +71,13 @@ fn describe_volume(volume: &VolumeInfo) -> String {
     let mm = volume.grid.spacing_mm();
     let [low, high] = volume.value_range;
     let (unit, storage) = (volume.unit(), volume.storage.name());
+    let between_slices = match volume.uneven_slices_mm {
+        None => format!("{:.3}", mm.z),
+        Some([least, most]) => format!("{least:.3} to {most:.3} (uneven, as they are)"),
+    };
     format!(
-        "{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {:.3} mm, {storage}, values {low} to {high} {unit}",
-        mm.x, mm.y, mm.z
+        "{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {between_slices} mm, {storage}, values {low} to {high} {unit}",
+        mm.x, mm.y
     )
 }
 
@@ -156,7 +160,7 @@ fn describe_method(method: &Method) -> String {
     parts.join(", ")
 }
 
-pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
+pub(super) fn not_computed(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<Omission> {
     let mut omissions = Vec::new();
     let mut omit = |what, why: &str| omissions.push(Omission { what, why: why.to_owned() });
     match plan.scene.model {
@@ -180,6 +184,9 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     if !plan.demand.macrocells {
         let why = match plan.method {
             Method::Reference => "the reference skips nothing",
+            Method::March(_) if volume.uneven_slices_mm.is_some() => {
+                "slices are uneven, and blocks of cells are counted in even steps: every sample is taken"
+            }
             _ => "the exact integrator skips cell by cell, by the values at their corners",
         };
         omit("macrocells", why);

@@ -112,7 +112,7 @@ impl<V: Voxel> Frame<'_, V> {
             budget: Budget::new(self.tolerance),
             pieces: 0,
         };
-        for segment in inside.segments(self.grid) {
+        for segment in self.lattice.segments(inside) {
             let stored = self.lattice.corners(segment.cell);
             // A 2D transfer function and shading read the same gradients; nobody may read any.
             let at_corners = OnceCell::new();

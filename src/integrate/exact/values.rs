@@ -26,7 +26,7 @@ pub(super) fn extreme<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray
         Extreme::Smallest => -1.0,
     };
     let mut best = f64::NEG_INFINITY;
-    for segment in IndexRay::clip(ray, grid)?.segments(grid) {
+    for segment in lattice.segments(IndexRay::clip(ray, grid)?) {
         let corners = lattice.corners::<f64>(segment.cell).map(|v| sign * v);
         if range(&corners)[1] <= best {
             continue;
@@ -47,7 +47,7 @@ pub(super) fn extreme<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray
 pub(super) fn mean<V: Voxel>(lattice: &Lattice<'_, V>, grid: &Grid, ray: &Ray) -> Option<f64> {
     let inside = IndexRay::clip(ray, grid)?;
     let mut total = 0.0;
-    for segment in inside.segments(grid) {
+    for segment in lattice.segments(inside) {
         total += 0.25 * sum(&along(&lattice.corners::<f64>(segment.cell), &segment)) * segment.length_mm;
     }
     Some(total / inside.length_mm())
@@ -79,7 +79,7 @@ pub(super) fn crossings<V: Voxel>(
     let Some(ray) = IndexRay::clip(ray, grid) else { return };
     let mut inside: Vec<Option<bool>> = vec![None; levels.len()];
     let mut found: Vec<(f64, usize)> = Vec::new();
-    for segment in ray.segments(grid) {
+    for segment in lattice.segments(ray) {
         let corners = lattice.corners::<f64>(segment.cell);
         let [low, high] = range(&corners);
         let settled = |(level, state): (&f64, &Option<bool>)| match state {
@@ -164,7 +164,7 @@ mod tests {
         let inside = IndexRay::clip(ray, volume.grid()).unwrap();
         let lattice = lattice(volume);
         let mut all = Vec::new();
-        for segment in inside.segments(volume.grid()) {
+        for segment in lattice.segments(inside) {
             let cubic = along(&lattice.corners::<f64>(segment.cell), &segment);
             all.extend((0..=400).map(|i| value(&cubic, f64::from(i) / 400.0)));
         }

@@ -3,7 +3,7 @@
 use super::composite::{self, Fold, Light};
 use super::lattice::{Cuts, Stretch};
 use crate::classify::{Classifier, Rgbs};
-use crate::field::{GradientUnits, Pace, Position, Trilinear, Voxel};
+use crate::field::{GradientUnits, Pace, Position, Spacing, Trilinear, Voxel};
 use crate::image::Image;
 use crate::integrate::Frame;
 use crate::integrate::chord::Chord;
@@ -16,8 +16,8 @@ use crate::plan::March;
 const RUN: usize = 16;
 
 /// What a sample reads, by type.
-pub(in super::super) struct Kernel<'a, V, C, S> {
-    pub(in super::super) field: Trilinear<'a, V>,
+pub(in super::super) struct Kernel<'a, V, K, C, S> {
+    pub(in super::super) field: Trilinear<'a, V, K>,
     /// The gradient magnitude, HU/mm; there if the transfer function reads it.
     pub(in super::super) magnitude: Option<Trilinear<'a, f32>>,
     pub(in super::super) units: GradientUnits,
@@ -27,7 +27,7 @@ pub(in super::super) struct Kernel<'a, V, C, S> {
     pub(in super::super) empty_space: Option<EmptySpace>,
 }
 
-impl<V: Voxel, C: Classifier<f32>, S: Shader> Kernel<'_, V, C, S> {
+impl<V: Voxel, K: Spacing, C: Classifier<f32>, S: Shader> Kernel<'_, V, K, C, S> {
     /// Renders every pixel of a frame.
     pub(in super::super) fn render(&self, frame: &Frame<'_>, settings: &March) -> (Image, Tally) {
         let (grid, camera) = (frame.volume.grid(), &frame.scene.camera);
@@ -96,7 +96,7 @@ impl<V: Voxel, C: Classifier<f32>, S: Shader> Kernel<'_, V, C, S> {
     /// Shaded emission and extinction at a position.
     #[inline(always)]
     fn sample(&self, aim: &S::Aim, position: Position) -> Rgbs<f32> {
-        let cell = position.cell();
+        let cell = self.field.cell(position);
         let magnitude = match &self.magnitude {
             Some(magnitude) if C::READS_GRADIENT => magnitude.value(&cell),
             _ => 0.0,
