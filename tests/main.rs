@@ -19,6 +19,7 @@ mod oracle;
 mod phantom;
 mod plan;
 mod properties;
+mod rectilinear;
 mod spec;
 mod support;
 mod verify;

@@ -27,6 +27,7 @@ fn pipeline(rest: &str) -> String {
 /// 64 x 48 x 33 voxels of 1 x 2 x 3 mm in HU.
 fn volume() -> VolumeInfo {
     VolumeInfo {
+        uneven_slices_mm: None,
         grid: Grid::axis_aligned([64, 48, 33], DVec3::new(1.0, 2.0, 3.0)).unwrap(),
         storage: Storage::I16,
         value_range: [-1000.0, 1800.0],

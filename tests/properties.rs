@@ -6,7 +6,7 @@ use pellucid::integrate::exact::{Precision, tracer};
 use pellucid::oracle::Oracle;
 use pellucid::scene::{Background, Camera, Effects, Light, Model, Projection, Scene, Shading};
 use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
-use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
+use pellucid::volume::{Grid, Quantity, Rescale, Samples, Slices, Volume};
 use proptest::prelude::*;
 
 /// Rays per case.
@@ -55,6 +55,19 @@ pub(crate) fn volume() -> impl Strategy<Value = Volume> {
             };
             Volume::new(grid, samples, rescale, Quantity::Hu).expect("as many samples as voxels")
         })
+    })
+}
+
+/// The same volumes with slices at random distances, from very thin to thick.
+fn rectilinear() -> impl Strategy<Value = Volume> {
+    let step = prop_oneof![Just(1.0), 1e-3..0.1f64, 0.1..10.0f64];
+    (volume(), prop::collection::vec(step, 5)).prop_map(|(volume, steps)| {
+        let [_, _, slices] = volume.grid().dims();
+        let places: Vec<f64> = (0..slices).map(|k| steps[..k].iter().sum()).collect();
+        if slices == 1 {
+            return volume;
+        }
+        volume.with_slices(Slices::new(&places).expect("ascending places")).expect("a place for each slice")
     })
 }
 
@@ -177,6 +190,25 @@ proptest! {
     ) {
         let camera = camera(volume.grid(), from, distance, false);
         let scene = Scene { model: Model::Light, transfer_function, shading: Some(shading), camera, background: Background::Transparent, effects: Effects::default() };
+        held_to_tolerance_and_bound(&volume, &scene, tolerance)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn pictures_of_uneven_slices_are_within_tolerance_and_bound(
+        volume in rectilinear(),
+        transfer_function in transfer_function(),
+        shading in prop::option::weighted(0.3, shading()),
+        from in direction(),
+        distance in prop_oneof![Just(0.2), 1.2..6.0f64],
+        parallel in any::<bool>(),
+        tolerance in prop_oneof![Just(1.0 / 255.0), Just(1e-3)],
+    ) {
+        let camera = camera(volume.grid(), from, distance, parallel);
+        let scene = Scene { model: Model::Light, transfer_function, shading, camera, background: Background::Transparent, effects: Effects::default() };
         held_to_tolerance_and_bound(&volume, &scene, tolerance)?;
     }
 }

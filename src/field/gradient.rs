@@ -2,12 +2,12 @@
 
 use glam::{Vec4, Vec4Swizzles};
 
-use super::{Cell, Trilinear, Voxel, interpolate};
+use super::{Cell, Even, Spacing, Trilinear, Voxel, interpolate};
 use crate::volume::{Grid, Rescale};
 
-impl<V: Voxel> Trilinear<'_, V> {
-    /// The gradient at a point, in stored units per index step: central differences at the eight corners, one-sided on the
-    /// border, 0 along an axis of one voxel; the vector is interpolated trilinearly.
+impl<V: Voxel, K: Spacing> Trilinear<'_, V, K> {
+    /// The gradient at a point, in stored units per index step: differences between the neighbours of the eight corners over
+    /// their distance, one-sided on the border, 0 along an axis of one voxel; the vector is interpolated trilinearly.
     #[inline(always)]
     pub fn gradient_per_index(&self, cell: &Cell) -> [f32; 3] {
         let inside = (0..3).all(|a| cell.corner[a] >= 1 && cell.corner[a] + 2 < self.dims[a]);
@@ -33,7 +33,9 @@ impl<V: Voxel> Trilinear<'_, V> {
 
         let (below_a, below_b) = (self.line(base - back), self.line(base - back + down));
         let (above_c, above_d) = (self.line(base + 2 * back), self.line(base + 2 * back + down));
-        let along_k = bilinear(c - below_a, d - below_b, above_c - a, above_d - b);
+        let [near, far] = [self.spacing.central(cell.corner[2]), self.spacing.central(cell.corner[2] + 1)];
+        let (near, far) = (Vec4::splat(near), Vec4::splat(far));
+        let along_k = bilinear((c - below_a) * near, (d - below_b) * near, (above_c - a) * far, (above_d - b) * far);
 
         let half = |low: f32, high: f32| 0.5 * (low + u * (high - low));
         [half(along_i.x, along_i.y), half(along_j.y, along_j.z), half(along_k.y, along_k.z)]
@@ -57,18 +59,19 @@ impl<V: Voxel> Trilinear<'_, V> {
         })
     }
 
-    /// The central difference along `axis` at a voxel, stored units per index step; one-sided on the border.
+    /// The difference along `axis` between the neighbours of a voxel over their distance, stored units per index step;
+    /// one-sided on the border.
     fn difference(&self, voxel: [usize; 3], axis: usize) -> f32 {
         let (mut before, mut after) = (voxel, voxel);
         before[axis] = voxel[axis].saturating_sub(1);
         after[axis] = (voxel[axis] + 1).min(self.dims[axis] - 1);
         let place = |[i, j, k]: [usize; 3]| i * self.strides[0] + j * self.strides[1] + k * self.strides[2];
         let difference = self.voxels[place(after)].minus(self.voxels[place(before)]);
-        match after[axis] - before[axis] {
-            2 => 0.5 * difference,
-            // One step, or none, where the difference is 0.
-            _ => difference,
-        }
+        let per_step = match axis {
+            2 => self.spacing.per_step(before[2], after[2]),
+            _ => Even.per_step(before[axis], after[axis]),
+        };
+        per_step * difference
     }
 }
 
@@ -133,7 +136,7 @@ mod tests {
             for i in 0..300 {
                 let u = |k: f64| (f64::from(i) * k).fract();
                 let at = DVec3::from_array(dims.map(|n| (n - 1) as f64)) * DVec3::new(u(0.618), u(0.414), u(0.732));
-                let found = field.gradient_per_index(&Position::new(at, dims).cell());
+                let found = field.gradient_per_index(&Position::new(at, dims).even_cell());
                 let expected = gradient_by_definition(&voxels, dims, at);
                 let apart = (DVec3::from_array(found.map(f64::from)) - expected).length();
                 assert!(apart < 4e-3, "{dims:?} at {at}: found {found:?}, expected {expected}");

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Trilinear, Voxel};
+use super::{Spacing, Trilinear, Voxel};
 
 /// Base-2 logarithm of the cells per axis of a block.
 pub(super) const LOG2_BLOCK_CELLS: u32 = 3;
@@ -28,7 +28,7 @@ impl Macrocells {
     }
 
     /// The ranges of a channel, computed in parallel.
-    pub fn new<V: Voxel>(field: &Trilinear<'_, V>) -> Self {
+    pub fn new<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>) -> Self {
         let blocks = Macrocells::blocks_of(field.dims);
         let [across, down, _] = blocks;
         let mut ranges = vec![[0.0; 2]; blocks.iter().product()];
@@ -58,7 +58,7 @@ fn voxels_of(block: usize, n: usize) -> std::ops::RangeInclusive<usize> {
 }
 
 /// Whole lines of voxels are reduced across the line first, which vectorises, and each block along the line last.
-fn fill_row<V: Voxel>(field: &Trilinear<'_, V>, j: usize, k: usize, row: &mut [[f32; 2]]) {
+fn fill_row<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>, j: usize, k: usize, row: &mut [[f32; 2]]) {
     let [nx, ny, nz] = field.dims;
     let first = field.voxels[nx * (j * BLOCK_CELLS + ny * k * BLOCK_CELLS)..][..nx].to_vec();
     let (mut low, mut high) = (first.clone(), first);
@@ -99,7 +99,7 @@ mod tests {
                 let position = Position::new(at, dims);
                 let [bi, bj, bk] = position.block(Macrocells::LOG2_CELLS);
                 let [low, high] = macrocells.ranges()[bi + across * (bj + down * bk)];
-                let value = field.value(&position.cell());
+                let value = field.value(&field.cell(position));
                 assert!(
                     low - 1e-3 <= value && value <= high + 1e-3,
                     "{dims:?} at {at}: {value} not in [{low}, {high}]"

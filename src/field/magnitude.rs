@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::{GradientUnits, Trilinear, Voxel};
+use super::{Even, GradientUnits, Spacing, Trilinear, Voxel};
 
 /// The gradient magnitude at every voxel, HU/mm, x fastest: 4 bytes per voxel, computed in parallel. Only 2D transfer
 /// functions read it.
-pub fn gradient_magnitude_per_mm<V: Voxel>(field: &Trilinear<'_, V>, units: &GradientUnits) -> Vec<f32> {
+pub fn gradient_magnitude_per_mm<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>, units: &GradientUnits) -> Vec<f32> {
     let [nx, ny, _] = field.dims;
     let mut magnitude = vec![0.0; field.voxels.len()];
     magnitude.par_chunks_mut(nx * ny).enumerate().for_each(|(k, slice)| {
@@ -17,30 +17,35 @@ pub fn gradient_magnitude_per_mm<V: Voxel>(field: &Trilinear<'_, V>, units: &Gra
     magnitude
 }
 
-fn fill_row<V: Voxel>(field: &Trilinear<'_, V>, units: &GradientUnits, j: usize, k: usize, row: &mut [f32]) {
+fn fill_row<V: Voxel, K: Spacing>(
+    field: &Trilinear<'_, V, K>,
+    units: &GradientUnits,
+    j: usize,
+    k: usize,
+    row: &mut [f32],
+) {
     let [nx, ny, nz] = field.dims;
     let line = |j: usize, k: usize| &field.voxels[nx * (j + ny * k)..][..nx];
-    let (j0, j1, per_j) = neighbours(j, ny);
-    let (k0, k1, per_k) = neighbours(k, nz);
+    let ((j0, j1), (k0, k1)) = (neighbours(j, ny), neighbours(k, nz));
+    let per_j = Even.per_step(j0, j1);
+    let per_k = field.spacing.per_step(k0, k1);
     let (here, front, back, below, above) = (line(j, k), line(j0, k), line(j1, k), line(j, k0), line(j, k1));
     let length = |x: f32, i: usize| {
         let [gx, gy, gz] = units.per_mm([x, back[i].minus(front[i]) * per_j, above[i].minus(below[i]) * per_k]);
         (gx * gx + gy * gy + gz * gz).sqrt()
     };
     for end in [0, nx - 1] {
-        let (i0, i1, per_i) = neighbours(end, nx);
-        row[end] = length(here[i1].minus(here[i0]) * per_i, end);
+        let (i0, i1) = neighbours(end, nx);
+        row[end] = length(here[i1].minus(here[i0]) * Even.per_step(i0, i1), end);
     }
     for i in 1..nx.max(2) - 1 {
         row[i] = length(0.5 * here[i + 1].minus(here[i - 1]), i);
     }
 }
 
-/// The neighbours of a voxel along an axis of `n`, and one over their distance (1 where both are the voxel itself: the
-/// difference is 0 then).
-fn neighbours(i: usize, n: usize) -> (usize, usize, f32) {
-    let (before, after) = (i.saturating_sub(1), (i + 1).min(n - 1));
-    (before, after, if after - before == 2 { 0.5 } else { 1.0 })
+/// The neighbours of a voxel along an axis of `n`; on the border the voxel itself is one of them.
+fn neighbours(i: usize, n: usize) -> (usize, usize) {
+    (i.saturating_sub(1), (i + 1).min(n - 1))
 }
 
 #[cfg(test)]
@@ -61,7 +66,7 @@ mod tests {
             let magnitude = gradient_magnitude_per_mm(&field, &units);
             for (index, found) in magnitude.iter().enumerate() {
                 let at = grid.unflatten(index);
-                let cell: Cell = Position::new(DVec3::from_array(at.map(|i| i as f64)), dims).cell();
+                let cell: Cell = Position::new(DVec3::from_array(at.map(|i| i as f64)), dims).even_cell();
                 let [x, y, z] = units.per_mm(field.gradient_per_index(&cell));
                 let expected = (x * x + y * y + z * z).sqrt();
                 assert!((found - expected).abs() < 0.01, "{dims:?} at {at:?}: found {found}, expected {expected}");

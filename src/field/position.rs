@@ -55,6 +55,17 @@ impl Position {
         }))
     }
 
+    /// A continuous index of the domain along one axis, as positions hold it.
+    pub(super) fn fixed(index: f64) -> i64 {
+        (index * (1i64 << FRACTION_BITS) as f64).round() as i64
+    }
+
+    /// The position along k.
+    #[inline(always)]
+    pub(super) fn along_k(self) -> i64 {
+        self.0[2]
+    }
+
     /// The step that leads from here to `last` in `steps` equal parts, rounded towards 0 so that it never leads beyond.
     pub fn step_to(self, last: Position, steps: usize) -> Step {
         Step(std::array::from_fn(|a| (last.0[a] - self.0[a]) / steps.max(1) as i64))
@@ -67,9 +78,9 @@ impl Position {
         Position(std::array::from_fn(|a| self.0[a] + step.0[a] * count as i64))
     }
 
-    /// The cell, and where in it.
+    /// The cell, and where in it, if slices are one step apart.
     #[inline(always)]
-    pub fn cell(self) -> Cell {
+    pub fn even_cell(self) -> Cell {
         let per_unit = 1.0 / (1u32 << KEPT_BITS) as f32;
         let mask = (1i32 << KEPT_BITS) - 1;
         Cell {
@@ -78,7 +89,7 @@ impl Position {
         }
     }
 
-    /// The block of `2^log2_cells` cells per axis that the position lies in.
+    /// The block of `2^log2_cells` steps per axis that the position lies in: of cells, where slices are one step apart.
     #[inline(always)]
     pub fn block(self, log2_cells: u32) -> [usize; 3] {
         self.0.map(|x| (x >> (FRACTION_BITS + log2_cells)) as usize)
@@ -121,14 +132,14 @@ mod tests {
 
     #[test]
     fn the_upper_border_belongs_to_the_last_cell() {
-        let cell = Position::new(DVec3::new(4.0, 2.25, 9.0), [5, 4, 1]).cell();
+        let cell = Position::new(DVec3::new(4.0, 2.25, 9.0), [5, 4, 1]).even_cell();
         assert_eq!(cell.corner, [3, 2, 0]);
         assert_eq!(cell.fraction, [1.0 - 1.0 / 16_777_216.0, 0.25, 0.0]);
     }
 
     #[test]
     fn positions_outside_are_clamped() {
-        let cell = Position::new(DVec3::new(-1e300, 1e300, f64::NAN), [5, 5, 5]).cell();
+        let cell = Position::new(DVec3::new(-1e300, 1e300, f64::NAN), [5, 5, 5]).even_cell();
         assert_eq!(cell.corner, [0, 3, 0]);
         assert!(cell.fraction.iter().all(|f| (0.0..1.0).contains(f)), "found {:?}", cell.fraction);
     }

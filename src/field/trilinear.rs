@@ -1,15 +1,16 @@
 //! Trilinear interpolation on the lattice.
 
-use super::{Cell, Position, Voxel};
+use super::{Cell, Even, Position, Spacing, Voxel};
 use crate::error::Result;
 
-/// A scalar channel on the lattice, interpolated trilinearly.
+/// A scalar channel on the lattice, interpolated trilinearly. `K` is how its slices follow each other.
 #[derive(Debug, Clone, Copy)]
-pub struct Trilinear<'v, V> {
+pub struct Trilinear<'v, V, K = Even> {
     pub(super) voxels: &'v [V],
     pub(super) dims: [usize; 3],
     /// Distance in memory to the next voxel along each axis; 0 along an axis of one voxel, which is its own neighbour.
     pub(super) strides: [usize; 3],
+    pub(super) spacing: K,
 }
 
 impl<'v, V: Voxel> Trilinear<'v, V> {
@@ -22,7 +23,26 @@ impl<'v, V: Voxel> Trilinear<'v, V> {
         assert_eq!(voxels.len(), dims.iter().product::<usize>(), "samples of a lattice of {dims:?}");
         Position::check(dims)?;
         let step = |axis: usize, stride: usize| if dims[axis] == 1 { 0 } else { stride };
-        Ok(Trilinear { voxels, dims, strides: [step(0, 1), step(1, dims[0]), step(2, dims[0] * dims[1])] })
+        Ok(Trilinear {
+            voxels,
+            dims,
+            strides: [step(0, 1), step(1, dims[0]), step(2, dims[0] * dims[1])],
+            spacing: Even,
+        })
+    }
+}
+
+impl<'v, V: Voxel, K: Spacing> Trilinear<'v, V, K> {
+    /// The same channel with slices at other places. Panics later if the table is not of this lattice.
+    pub fn with_spacing<L: Spacing>(self, spacing: L) -> Trilinear<'v, V, L> {
+        let Trilinear { voxels, dims, strides, .. } = self;
+        Trilinear { voxels, dims, strides, spacing }
+    }
+
+    /// The cell of a position, and where in it.
+    #[inline(always)]
+    pub fn cell(&self, position: Position) -> Cell {
+        self.spacing.cell(position)
     }
 
     /// Number of voxels along i, j and k.
@@ -113,7 +133,7 @@ mod tests {
                 } else {
                     end * DVec3::new(u(0.618), u(0.414), u(0.732))
                 };
-                let found = f64::from(field.value(&Position::new(at, dims).cell()));
+                let found = f64::from(field.value(&field.cell(Position::new(at, dims))));
                 let expected = value_by_definition(&exact, dims, at);
                 assert!((found - expected).abs() < 2e-3, "{dims:?} at {at}: found {found}, expected {expected}");
             }

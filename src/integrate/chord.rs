@@ -51,10 +51,9 @@ impl Chord {
         })
     }
 
-    /// The part inside the domain of a ray from a lattice point; `None` if it has no length. The entry is exact, so that a
+    /// The part inside the domain of a ray from a continuous index; `None` if it has no length. The entry is exact, so that a
     /// ray along the border does not leave it by rounding.
-    pub(super) fn from_voxel(grid: &Grid, voxel: [usize; 3], direction: DVec3) -> Option<Self> {
-        let entry_index = DVec3::from_array(voxel.map(|i| i as f64));
+    pub(super) fn from_index(grid: &Grid, entry_index: DVec3, direction: DVec3) -> Option<Self> {
         let index_per_mm = grid.lps_mm_to_index().transform_vector3(direction);
         let (low, high) = grid.index_bounds();
         let mut length_mm = f64::INFINITY;
@@ -135,7 +134,7 @@ mod tests {
     fn from_a_border_voxel_along_the_border_it_stays_inside() {
         // 9.1 mm over 0.7 mm is more than 13 in floating point.
         let grid = Grid::axis_aligned([14, 14, 1], DVec3::splat(0.7)).unwrap();
-        let length = |direction| Chord::from_voxel(&grid, [13, 2, 0], direction).map(|c| c.length_mm);
+        let length = |direction| Chord::from_index(&grid, DVec3::new(13.0, 2.0, 0.0), direction).map(|c| c.length_mm);
         assert!(length(DVec3::Y).is_some_and(|l| (l - 7.7).abs() < 1e-12), "found {:?}", length(DVec3::Y));
         assert!(length(DVec3::Z).is_some_and(|l| (l - 0.35).abs() < 1e-12), "half of one voxel");
         assert_eq!(length(DVec3::X), None, "outwards there is nothing");

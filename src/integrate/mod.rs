@@ -105,6 +105,7 @@ pub fn render_scheduled(
 fn check_combination(volume: &Volume, scene: &Scene, method: &Method) -> Result<()> {
     let (colors, effects) = (volume.samples().are_rgba(), &scene.effects);
     let of_light = effects.change_light() || effects.mask.is_some();
+    let (marched, uneven) = (matches!(method, Method::March(_)), volume.slices().is_some());
     let at_voxels = effects.classify == ClassifyAt::Voxels && scene.model == Model::Light;
     let (what, found, remedy) = match &scene.model {
         Model::Value(_) if colors => ("an RGBA volume has no values", "a number of its values", "show its light"),
@@ -122,8 +123,17 @@ fn check_combination(volume: &Volume, scene: &Scene, method: &Method) -> Result<
             "further effects of light, or a mask",
             "classify samples",
         ),
-        Model::Value(_) | Model::Surfaces(_) if effects.mask.is_some() && matches!(method, Method::March(_)) => {
+        Model::Value(_) | Model::Surfaces(_) if effects.mask.is_some() && marched => {
             ("marching does not mask values", "a mask", "use integrate: exact, which cuts rays where classes change")
+        }
+        Model::Light if uneven && at_voxels && !colors => {
+            ("classification at the voxels needs even slices", "slices at uneven distances", "classify samples")
+        }
+        Model::Light if uneven && colors && marched => {
+            ("marching through colours needs even slices", "slices at uneven distances", "use integrate: exact")
+        }
+        Model::Value(_) | Model::Surfaces(_) if uneven && marched => {
+            ("marching for values needs even slices", "slices at uneven distances", "use integrate: exact")
         }
         _ => return Ok(()),
     };

@@ -9,7 +9,7 @@ use super::texels::{Component, Rgba, Texels};
 use super::{Frame, KernelName, Rendered, Statistics};
 use crate::classify::{Baked, BakedAlike, bake, bake_alike};
 use crate::error::Result;
-use crate::field::{GradientUnits, Macrocells, Trilinear, Voxel, gradient_magnitude_per_mm};
+use crate::field::{GradientUnits, Macrocells, SliceTable, Spacing, Trilinear, Voxel, gradient_magnitude_per_mm};
 use crate::plan::March;
 use crate::scene::ClassifyAt;
 use crate::volume::Samples;
@@ -69,28 +69,45 @@ fn by_shader<V: Voxel, C: ByPlace>(
 ) -> Result<Rendered> {
     if frame.scene.effects.change_light() {
         let atmosphere = Atmosphere::new(frame.volume, frame.scene);
-        return run(frame, settings, voxels, classifier, &atmosphere);
+        return by_spacing(frame, settings, voxels, classifier, &atmosphere);
     }
     match &frame.scene.shading {
-        None => run(frame, settings, voxels, classifier, &Unlit),
-        Some(shading) => run(frame, settings, voxels, classifier, &Lit::new(shading)),
+        None => by_spacing(frame, settings, voxels, classifier, &Unlit),
+        Some(shading) => by_spacing(frame, settings, voxels, classifier, &Lit::new(shading)),
     }
 }
 
-/// Computes what this kernel reads, and nothing else, and renders.
-fn run<V: Voxel, C: ByPlace, S: Shader>(
+fn by_spacing<V: Voxel, C: ByPlace, S: Shader>(
     frame: &Frame<'_>,
     settings: &March,
     voxels: &[V],
     classifier: &C,
     shader: &S,
 ) -> Result<Rendered> {
+    let field = Trilinear::new(voxels, frame.volume.grid().dims())?;
+    match frame.volume.slices() {
+        None => run(frame, settings, field, classifier, shader),
+        Some(slices) => {
+            let table = SliceTable::new(slices);
+            run(frame, settings, field.with_spacing(table.spacing()), classifier, shader)
+        }
+    }
+}
+
+/// Computes what this kernel reads, and nothing else, and renders.
+fn run<V: Voxel, K: Spacing, C: ByPlace, S: Shader>(
+    frame: &Frame<'_>,
+    settings: &March,
+    field: Trilinear<'_, V, K>,
+    classifier: &C,
+    shader: &S,
+) -> Result<Rendered> {
     let grid = frame.volume.grid();
-    let field = Trilinear::new(voxels, grid.dims())?;
     let units = GradientUnits::new(grid, frame.volume.rescale());
     let magnitudes = C::READS_GRADIENT.then(|| gradient_magnitude_per_mm(&field, &units));
     let magnitude = magnitudes.as_deref().map(|m| Trilinear::new(m, grid.dims())).transpose()?;
-    let empty_space = frame.schedule.empty_space_skipping.then(|| {
+    // Blocks are counted in even steps.
+    let empty_space = (frame.schedule.empty_space_skipping && K::EVEN).then(|| {
         let magnitudes = magnitude.as_ref().map(Macrocells::new);
         EmptySpace::new(&Macrocells::new(&field), magnitudes.as_ref(), classifier)
     });

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::dicom::{self, SeriesChoice};
+use super::dicom::{self, SeriesChoice, SliceSpacing};
 use super::{Scan, nrrd};
 use crate::error::{Error, Fault, Result};
 
@@ -30,8 +30,16 @@ const UNSUPPORTED: [(&str, &str); 8] = [
 /// `Fault::Input` for a path that is missing or unreadable, `Fault::Unsupported` for a format that is not read here, and
 /// whatever the reader finds; `Fault::Limit` for more than `max_bytes`.
 pub fn load(path: &Path, series: &SeriesChoice, max_bytes: Option<u64>) -> Result<Scan> {
+    load_spaced(path, series, SliceSpacing::Even, max_bytes)
+}
+
+/// The same for DICOM slices whose spacing may change; the slices of a NRRD have one.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_spaced(path: &Path, series: &SeriesChoice, spacing: SliceSpacing, max_bytes: Option<u64>) -> Result<Scan> {
     match format_of(path)? {
-        Format::Dicom => dicom::read(path, series, max_bytes),
+        Format::Dicom => dicom::read_spaced(path, series, spacing, max_bytes),
         Format::Nrrd => nrrd::read_within(path, max_bytes),
     }
 }

@@ -9,7 +9,7 @@ pub mod nrrd;
 pub mod png;
 pub mod whole_file;
 
-pub use load::{Format, format_of, load};
+pub use load::{Format, format_of, load, load_spaced};
 
 use std::path::{Path, PathBuf};
 

@@ -31,21 +31,25 @@ impl<'a> Cell<'a> {
         self.corners.map(|c| self.volume.value(c))
     }
 
-    /// Central-difference gradients at the corners, per mm in LPS.
+    /// Gradients at the corners, per mm in LPS.
     pub(super) fn gradients_per_mm(&self) -> [DVec3; 8] {
         self.corners.map(|c| gradient_per_mm(self.volume, c))
     }
 }
 
-/// Central difference at a lattice point, one-sided at the border, 0 along an axis of one voxel; per mm in LPS.
+/// Difference between the neighbours of a lattice point over their distance, one-sided at the border, 0 along an axis of
+/// one voxel; per mm in LPS.
 fn gradient_per_mm(volume: &Volume, voxel: [usize; 3]) -> DVec3 {
     let grid = volume.grid();
     let per_index = std::array::from_fn(|a| {
         let (mut low, mut high) = (voxel, voxel);
         low[a] = voxel[a].saturating_sub(1);
         high[a] = (voxel[a] + 1).min(grid.dims()[a] - 1);
-        let steps = high[a] - low[a];
-        if steps == 0 { 0.0 } else { (volume.value(high) - volume.value(low)) / steps as f64 }
+        let steps = match volume.slices() {
+            Some(slices) if a == 2 => slices.positions()[high[a]] - slices.positions()[low[a]],
+            _ => (high[a] - low[a]) as f64,
+        };
+        if steps == 0.0 { 0.0 } else { (volume.value(high) - volume.value(low)) / steps }
     });
     grid.gradient_to_per_mm() * DVec3::from_array(per_index)
 }

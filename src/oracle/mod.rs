@@ -156,11 +156,14 @@ impl<'a> Oracle<'a> {
 
     /// The same from a lattice point.
     fn transmittance_from(&self, voxel: [usize; 3], direction: DVec3) -> f64 {
-        let grid = self.volume.grid();
-        let index = DVec3::from_array(voxel.map(|i| i as f64));
-        let ray = Ray { origin_mm: grid.index_to_lps_mm().transform_point3(index), direction };
-        let shown = self.scene.effects.clip.interval_mm(&ray);
-        self.by_panels(shown.and_then(|shown| Path::from_voxel(grid, voxel, direction, shown))).transmittance()
+        let (grid, origin_mm) = (self.volume.grid(), self.volume.voxel_mm(voxel));
+        let shown = self.scene.effects.clip.interval_mm(&Ray { origin_mm, direction });
+        let mut index = DVec3::from_array(voxel.map(|i| i as f64));
+        if let Some(slices) = self.volume.slices() {
+            index.z = slices.positions()[voxel[2]];
+        }
+        let path = shown.and_then(|shown| Path::from_index(grid, index, direction, shown));
+        self.by_panels(path.map(|path| path.through(self.volume.slices()))).transmittance()
     }
 
     /// The same as [`Oracle::segment`] by method B whatever the scene: to hold one method against the other.
@@ -201,7 +204,7 @@ impl<'a> Oracle<'a> {
         light.segment()
     }
 
-    fn by_panels(&self, path: Option<Path>) -> Segment {
+    fn by_panels(&self, path: Option<Path<'_>>) -> Segment {
         let mut light = Light::default();
         self.walk(path, false, &mut light, |passage, seen, splits, light| {
             let Some((fields, patches)) = seen else { return };
@@ -232,16 +235,17 @@ impl<'a> Oracle<'a> {
     }
 
     /// The part of the ray between two distances from its origin, mm, that is in the domain and not clipped away.
-    fn path(&self, ray: &Ray, from_mm: f64, to_mm: f64) -> Option<Path> {
+    fn path(&self, ray: &Ray, from_mm: f64, to_mm: f64) -> Option<Path<'a>> {
         let [first_mm, last_mm] = self.scene.effects.clip.interval_mm(ray)?;
-        Path::new(self.volume.grid(), ray, from_mm.max(first_mm), to_mm.min(last_mm))
+        let path = Path::new(self.volume.grid(), ray, from_mm.max(first_mm), to_mm.min(last_mm))?;
+        Some(path.through(self.volume.slices()))
     }
 
     /// Gathers light cell by cell, from the eye on; `gather` is given each passage with the fields along it and the transfer
     /// function there, or `None` where that shows nothing.
     fn walk(
         &self,
-        path: Option<Path>,
+        path: Option<Path<'_>>,
         shaded: bool,
         light: &mut Light,
         mut gather: impl FnMut(&Passage, Option<(&Fields, &Patches)>, &mut Splits, &mut Light),

@@ -3,12 +3,14 @@
 use glam::DVec3;
 
 use crate::scene::Ray;
-use crate::volume::Grid;
+use crate::volume::{Grid, Slices};
 
 /// A ray inside the domain, in voxel indices.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Path {
+pub(super) struct Path<'a> {
     dims: [usize; 3],
+    /// Places of slices at uneven distances.
+    slices: Option<&'a [f64]>,
     /// Index at parameter 0.
     origin: DVec3,
     /// Index steps per mm.
@@ -34,9 +36,9 @@ pub(super) struct Passage {
     pub(super) from_mm: f64,
 }
 
-impl Path {
+impl<'a> Path<'a> {
     /// The part of a ray between `from_mm` and `to_mm` that lies in the domain, or `None` if it is empty or a point.
-    pub(super) fn new(grid: &Grid, ray: &Ray, from_mm: f64, to_mm: f64) -> Option<Path> {
+    pub(super) fn new(grid: &Grid, ray: &Ray, from_mm: f64, to_mm: f64) -> Option<Self> {
         // The parameter is counted from the point next to the domain's centre, so that a far origin costs no digits.
         let center_mm = (grid.center_mm() - ray.origin_mm).dot(ray.direction);
         let corner = grid.index_to_lps_mm().translation;
@@ -46,6 +48,7 @@ impl Path {
         let to_index = grid.lps_mm_to_index().matrix3;
         let path = Path {
             dims: grid.dims(),
+            slices: None,
             origin: to_index * start,
             step_per_mm: to_index * ray.direction,
             ends_mm: [from_mm.max(0.0) - center_mm, to_mm - center_mm],
@@ -56,15 +59,11 @@ impl Path {
 
     /// The part between `from_mm` and `to_mm` of the ray from a lattice point in a direction. Its index is exact, so that a
     /// ray along the border of the domain does not leave it by rounding.
-    pub(super) fn from_voxel(
-        grid: &Grid,
-        voxel: [usize; 3],
-        direction: DVec3,
-        [from_mm, to_mm]: [f64; 2],
-    ) -> Option<Path> {
+    pub(super) fn from_index(grid: &Grid, origin: DVec3, direction: DVec3, [from_mm, to_mm]: [f64; 2]) -> Option<Self> {
         let path = Path {
             dims: grid.dims(),
-            origin: DVec3::from_array(voxel.map(|i| i as f64)),
+            slices: None,
+            origin,
             step_per_mm: grid.lps_mm_to_index().matrix3 * direction,
             ends_mm: [from_mm.max(0.0), to_mm],
             zero_mm: 0.0,
@@ -73,7 +72,7 @@ impl Path {
     }
 
     /// The part inside the domain, or `None` if it is empty or a point.
-    fn inside(self, grid: &Grid) -> Option<Path> {
+    fn inside(self, grid: &Grid) -> Option<Self> {
         let Path { origin, step_per_mm, ends_mm: [mut first, mut last], .. } = self;
         let (low, high) = grid.index_bounds();
         for a in 0..3 {
@@ -92,9 +91,15 @@ impl Path {
         (first < last).then_some(Path { ends_mm: [first, last], ..self })
     }
 
+    /// The same path through a lattice whose slices lie at these places.
+    pub(super) fn through(mut self, slices: Option<&'a Slices>) -> Self {
+        self.slices = slices.map(Slices::positions);
+        self
+    }
+
     /// The cells in order. Each crossing of a face is computed from the origin, never from the crossing before it.
     pub(super) fn passages(&self) -> impl Iterator<Item = Passage> + '_ {
-        let mut faces: [Faces; 3] = std::array::from_fn(|a| Faces::new(self, a));
+        let mut faces: [Faces<'_>; 3] = std::array::from_fn(|a| Faces::new(self, a));
         let [mut here, end] = self.ends_mm;
         std::iter::from_fn(move || {
             while here < end {
@@ -127,12 +132,26 @@ impl Path {
             }
             // The middle decides: it is as far from the faces as the path gets. Cells are half-open, the last is closed.
             let highest = self.dims[a] - 2;
-            let cell = self.index(middle, a).floor().clamp(0.0, highest as f64);
-            passage.cell[a] = cell as usize;
-            passage.entry[a] = (self.index(from_mm, a) - cell).clamp(0.0, 1.0);
-            passage.exit[a] = (self.index(to_mm, a) - cell).clamp(0.0, 1.0);
+            let (cell, low, height) = match self.slices_across(a) {
+                None => {
+                    let cell = self.index(middle, a).floor().clamp(0.0, highest as f64);
+                    (cell as usize, cell, 1.0)
+                }
+                Some(places) => {
+                    let below = places.iter().filter(|&&place| place <= self.index(middle, a)).count();
+                    let cell = below.clamp(1, highest + 1) - 1;
+                    (cell, places[cell], places[cell + 1] - places[cell])
+                }
+            };
+            passage.cell[a] = cell;
+            passage.entry[a] = ((self.index(from_mm, a) - low) / height).clamp(0.0, 1.0);
+            passage.exit[a] = ((self.index(to_mm, a) - low) / height).clamp(0.0, 1.0);
         }
         passage
+    }
+
+    fn slices_across(&self, axis: usize) -> Option<&'a [f64]> {
+        self.slices.filter(|_| axis == 2)
     }
 
     fn index(&self, s_mm: f64, axis: usize) -> f64 {
@@ -157,20 +176,27 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// The faces across one axis that lie ahead.
 #[derive(Debug, Clone, Copy)]
-struct Faces {
+struct Faces<'a> {
+    slices: Option<&'a [f64]>,
     origin: f64,
     step_per_mm: f64,
-    index: f64,
+    /// Number of the next face; beyond the lattice there is none.
+    number: f64,
     next_mm: f64,
 }
 
-impl Faces {
-    fn new(path: &Path, axis: usize) -> Self {
+impl<'a> Faces<'a> {
+    fn new(path: &Path<'a>, axis: usize) -> Self {
         let (origin, step_per_mm) = (path.origin[axis], path.step_per_mm[axis]);
-        let mut faces = Faces { origin, step_per_mm, index: 0.0, next_mm: f64::INFINITY };
+        let slices = path.slices_across(axis);
+        let mut faces = Faces { slices, origin, step_per_mm, number: 0.0, next_mm: f64::INFINITY };
         if path.dims[axis] > 1 && step_per_mm != 0.0 {
-            // One face too early, whatever the rounding; `pass` leaves behind what is not ahead.
-            faces.index = path.index(path.ends_mm[0], axis).round() - 2.0 * step_per_mm.signum();
+            // Too early, whatever the rounding; `pass` leaves behind what is not ahead.
+            faces.number = match slices {
+                None => path.index(path.ends_mm[0], axis).round() - 2.0 * step_per_mm.signum(),
+                Some(_) if step_per_mm > 0.0 => 0.0,
+                Some(places) => (places.len() - 1) as f64,
+            };
             faces.next_mm = faces.crossing_mm();
             faces.pass(path.ends_mm[0]);
         }
@@ -178,13 +204,18 @@ impl Faces {
     }
 
     fn crossing_mm(&self) -> f64 {
-        (self.index - self.origin) / self.step_per_mm
+        let index = match self.slices {
+            None => self.number,
+            Some(places) if self.number >= 0.0 => places.get(self.number as usize).copied().unwrap_or(f64::INFINITY),
+            Some(_) => f64::NEG_INFINITY,
+        };
+        (index - self.origin) / self.step_per_mm
     }
 
     /// Leaves all faces up to `s_mm` behind.
     fn pass(&mut self, s_mm: f64) {
         while self.next_mm <= s_mm {
-            self.index += self.step_per_mm.signum();
+            self.number += self.step_per_mm.signum();
             self.next_mm = self.crossing_mm();
         }
     }
@@ -194,13 +225,13 @@ impl Faces {
 mod tests {
     use super::*;
 
-    fn path(dims: [usize; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<Path> {
+    fn path(dims: [usize; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<Path<'static>> {
         let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();
         let ray = Ray { origin_mm: origin.into(), direction: DVec3::from_array(direction).normalize() };
         Path::new(&grid, &ray, 0.0, f64::INFINITY)
     }
 
-    fn cells(path: &Path) -> Vec<[usize; 3]> {
+    fn cells(path: &Path<'_>) -> Vec<[usize; 3]> {
         path.passages().map(|p| p.cell).collect()
     }
 
@@ -266,10 +297,13 @@ mod tests {
         // 9.1 mm over 0.7 mm is more than 13 in floating point.
         let grid = Grid::axis_aligned([14, 14, 3], DVec3::splat(0.7)).unwrap();
         let everywhere = [0.0, f64::INFINITY];
-        let along = Path::from_voxel(&grid, [13, 2, 1], DVec3::Y, everywhere).unwrap();
+        let along = Path::from_index(&grid, DVec3::new(13.0, 2.0, 1.0), DVec3::Y, everywhere).unwrap();
         let passages: Vec<Passage> = along.passages().collect();
         assert_eq!((passages.len(), passages[0].from_mm), (11, 0.0));
-        assert!(Path::from_voxel(&grid, [13, 2, 1], DVec3::X, everywhere).is_none(), "outwards there is nothing");
+        assert!(
+            Path::from_index(&grid, DVec3::new(13.0, 2.0, 1.0), DVec3::X, everywhere).is_none(),
+            "outwards there is nothing"
+        );
     }
 
     #[test]

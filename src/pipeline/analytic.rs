@@ -6,16 +6,16 @@ use super::memory;
 use crate::error::Result;
 use crate::io::Scan;
 use crate::spec::{AnalyticSpec, FieldSpec, PerAxis, Spec};
-use crate::synthetic::analytic::{Expression, MarschnerLobb, Ramp, ScalarField, Sphere, Torus, centered_grid, sample};
-use crate::volume::{Grid, Quantity};
+use crate::synthetic::analytic::{Expression, Lattice, MarschnerLobb, Ramp, ScalarField, Sphere, Torus, sample};
+use crate::volume::Quantity;
 
 /// Samples the formula; its values are arbitrary unless the spec says otherwise.
 pub(super) fn load(spec: &Spec, analytic: &AnalyticSpec, max_bytes: Option<u64>) -> Result<Scan> {
     let field = field(spec, &analytic.field)?;
-    let grid = grid(analytic).map_err(|error| spec.located("volume.analytic", error))?;
-    let reading_bytes = 4 * grid.voxel_count() as u64;
+    let lattice = lattice(analytic).map_err(|error| spec.located("volume.analytic", error))?;
+    let reading_bytes = 4 * lattice.voxel_count() as u64;
     memory::refuse_beyond(max_bytes, reading_bytes, "volume.analytic.size")?;
-    let volume = sample(field.as_ref(), grid, Quantity::Arbitrary)
+    let volume = sample(field.as_ref(), lattice, Quantity::Arbitrary)
         .map_err(|error| spec.located("volume.analytic.field", error))?;
     let facts = [("format", "synthetic, by formula".to_string()), ("formula", describe(&analytic.field))];
     let facts = facts.map(|(label, text)| (label.to_string(), text)).to_vec();
@@ -60,18 +60,22 @@ fn expression(spec: &Spec, text: &str) -> Result<Expression> {
     })
 }
 
-/// The lattice; the spec has been checked, so that what is written is three numbers.
-fn grid(analytic: &AnalyticSpec) -> Result<Grid> {
-    let along = |lengths: &Option<PerAxis<f64>>| lengths.as_ref().and_then(PerAxis::along::<3>);
-    let size = analytic.size.along::<3>().unwrap_or([0; 3]);
-    let spacing_mm = match (along(&analytic.spacing_mm), along(&analytic.extent_mm)) {
-        (Some(spacing_mm), _) => DVec3::from_array(spacing_mm),
-        (None, extent_mm) => {
-            let extent_mm = DVec3::from_array(extent_mm.unwrap_or([f64::NAN; 3]));
-            extent_mm / DVec3::from_array(size.map(|n| f64::from(n.max(2) - 1)))
-        }
+/// The lattice; the spec has been checked, so that as many numbers are written as there are axes.
+fn lattice(analytic: &AnalyticSpec) -> Result<Lattice> {
+    let axes = if analytic.planes_mm.is_some() { 2 } else { 3 };
+    let size = analytic.size.numbers(axes).unwrap_or_default();
+    let numbers = |lengths: &Option<PerAxis<f64>>| lengths.as_ref().and_then(|mm| mm.numbers(axes));
+    let spacing_mm: Vec<f64> = match (numbers(&analytic.spacing_mm), numbers(&analytic.extent_mm)) {
+        (Some(spacing_mm), _) => spacing_mm,
+        (None, Some(extent_mm)) => extent_mm.iter().zip(&size).map(|(mm, &n)| mm / f64::from(n.max(2) - 1)).collect(),
+        (None, None) => Vec::new(),
     };
-    centered_grid(size.map(|n| n as usize), spacing_mm)
+    let (size, spacing_mm) = (|a: usize| size.get(a).map_or(0, |&n| n as usize), |a: usize| spacing_mm.get(a).copied());
+    let mm = |a: usize| spacing_mm(a).unwrap_or(f64::NAN);
+    match &analytic.planes_mm {
+        None => Lattice::centered([size(0), size(1), size(2)], DVec3::new(mm(0), mm(1), mm(2))),
+        Some(planes_mm) => Lattice::on_planes([size(0), size(1)], [mm(0), mm(1)], planes_mm),
+    }
 }
 
 /// The formula in words, for `info`.

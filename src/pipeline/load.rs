@@ -2,8 +2,8 @@
 
 use super::{Options, analytic, memory};
 use crate::error::Result;
-use crate::io::{self, Scan, dicom::SeriesChoice};
-use crate::spec::{PhantomHead, PhantomRings, PhantomSpec, Series, Spec, VolumeSource};
+use crate::io::{self, Scan, dicom::SeriesChoice, dicom::SliceSpacing};
+use crate::spec::{PhantomHead, PhantomRings, PhantomSpec, Series, SlicesName, Spec, VolumeSource};
 use crate::synthetic::{self, HeadPhantom};
 
 /// Reads or makes the volume of a spec, its values understood as the spec says.
@@ -14,7 +14,9 @@ use crate::synthetic::{self, HeadPhantom};
 pub fn load(spec: &Spec, options: &Options) -> Result<Scan> {
     let max_bytes = memory::limit_bytes(options);
     let scan = match spec.volume_source() {
-        VolumeSource::File { path, series } => io::load(&path, &choice(series), max_bytes)?,
+        VolumeSource::File { path, series, slices } => {
+            io::load_spaced(&path, &choice(series), spacing(slices), max_bytes)?
+        }
         VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head, max_bytes)?,
         VolumeSource::Phantom(PhantomSpec::Rings(PhantomRings { size })) => {
             let size = size.map_or(64, |size| size as usize);
@@ -32,6 +34,13 @@ fn choice(series: Option<Series>) -> SeriesChoice {
     match series {
         None | Some(Series::Largest) => SeriesChoice::Largest,
         Some(Series::Uid(uid)) => SeriesChoice::Named(uid),
+    }
+}
+
+fn spacing(slices: Option<SlicesName>) -> SliceSpacing {
+    match slices {
+        None | Some(SlicesName::Even) => SliceSpacing::Even,
+        Some(SlicesName::Uneven) => SliceSpacing::Uneven,
     }
 }
 

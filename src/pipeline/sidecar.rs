@@ -76,6 +76,9 @@ pub struct VolumeRecord {
     pub dims: [usize; 3],
     /// Voxel index to LPS mm, three rows of four numbers.
     pub index_to_lps_mm: [[f64; 4]; 3],
+    /// Distance of each slice from the first along k, mm, where they are uneven; else the affine says it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slice_positions_mm: Option<Vec<f64>>,
     /// Smallest and largest value.
     pub value_range: [f64; 2],
 }
@@ -174,6 +177,7 @@ impl From<&Volume> for VolumeRecord {
             values_sha256: volume.values_sha256(),
             dims: volume.grid().dims(),
             index_to_lps_mm: volume.grid().index_to_lps_mm_rows(),
+            slice_positions_mm: volume.slice_positions_mm(),
             value_range: volume.value_range(),
         }
     }

@@ -1,17 +1,16 @@
 //! Settings of the integrators, with their defaults.
 
-use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
+use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule, VolumeInfo};
 use crate::spec::{
     ColorsName, EmissionName, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName, RuleName,
     Spec,
 };
-use crate::volume::Grid;
 
-pub(super) fn resolve(spec: &Spec, grid: &Grid) -> Method {
+pub(super) fn resolve(spec: &Spec, volume: &VolumeInfo) -> Method {
     match &spec.pipeline.integrate {
         None => Method::Exact(exact(None)),
         Some(IntegrateSpec::Exact(settings)) => Method::Exact(exact(settings.tolerance)),
-        Some(IntegrateSpec::March(settings)) => Method::March(march(settings, grid)),
+        Some(IntegrateSpec::March(settings)) => Method::March(march(settings, volume)),
         Some(IntegrateSpec::Reference) => Method::Reference,
     }
 }
@@ -21,10 +20,9 @@ fn exact(tolerance: Option<f64>) -> Exact {
     Exact { tolerance: tolerance.unwrap_or(1.0 / 255.0) }
 }
 
-fn march(spec: &MarchSpec, grid: &Grid) -> March {
-    let smallest_spacing_mm = grid.spacing_mm().min_element();
+fn march(spec: &MarchSpec, volume: &VolumeInfo) -> March {
     March {
-        step_mm: spec.step_mm.unwrap_or(spec.step_voxels.unwrap_or(0.5) * smallest_spacing_mm),
+        step_mm: spec.step_mm.unwrap_or(spec.step_voxels.unwrap_or(0.5) * volume.smallest_spacing_mm()),
         rule: match spec.rule {
             Some(RuleName::Left) => SampleRule::Left,
             None | Some(RuleName::Midpoint) => SampleRule::Midpoint,

@@ -94,11 +94,13 @@ impl Plan {
             background: light.background,
             effects,
         };
-        let method = integrator::resolve(spec, &volume.grid);
+        let method = integrator::resolve(spec, volume);
         let demand = Demand {
             gradient: scene.shading.as_ref().is_some_and(Shading::is_lit),
             gradient_magnitude: scene.transfer_function.reads_gradient(),
-            macrocells: matches!(method, Method::March(_)) && model::skips_blocks(&scene.model),
+            macrocells: matches!(method, Method::March(_))
+                && model::skips_blocks(&scene.model)
+                && volume.uneven_slices_mm.is_none(),
             visibility: !scene.occluded_directions().is_empty(),
         };
         let mut plan = Plan {
@@ -115,7 +117,7 @@ impl Plan {
             warnings: Vec::new(),
         };
         plan.stages = stages::computed(&plan, volume);
-        plan.not_computed = stages::not_computed(&plan, spec);
+        plan.not_computed = stages::not_computed(&plan, spec, volume);
         plan.not_computed.extend(omitted);
         plan.warnings = warnings::of(&plan, spec, volume);
         plan.warnings.extend(warnings);

@@ -45,7 +45,7 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
             stages.push(Stage { name: "field", what: what.to_owned(), bytes });
         }
     };
-    if plan.demand.gradient_magnitude && plan.demand.macrocells {
+    if plan.demand.gradient_magnitude && matches!(plan.method, Method::March(_)) {
         field("gradient magnitude at the voxels, by central differences, f32", 4 * voxels);
     } else if plan.demand.gradient_magnitude {
         field("gradient magnitude at corners of lit cells, by central differences, not stored", 0);
@@ -92,7 +92,11 @@ fn describe_volume(volume: &VolumeInfo) -> String {
         Some(_) => format!("alpha {low} to {high}"),
         None => format!("values {low} to {high} {unit}"),
     };
-    format!("{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {:.3} mm, {storage}, {values}", mm.x, mm.y, mm.z)
+    let between_slices = match volume.uneven_slices_mm {
+        None => format!("{:.3}", mm.z),
+        Some([least, most]) => format!("{least:.3} to {most:.3} (uneven, as they are)"),
+    };
+    format!("{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {between_slices} mm, {storage}, {values}", mm.x, mm.y)
 }
 
 pub(super) fn block_count(grid: &Grid) -> u64 {
@@ -197,7 +201,7 @@ fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
     shown.into_iter().chain([parts.join(", ")]).collect::<Vec<_>>().join("; ")
 }
 
-pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
+pub(super) fn not_computed(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<Omission> {
     let mut omissions = Vec::new();
     let mut omit = |what, why: &str| omissions.push(Omission { what, why: why.to_owned() });
     if plan.colors.is_some() {
@@ -223,6 +227,9 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     if !plan.demand.macrocells {
         let why = match plan.method {
             Method::Reference => "the reference skips nothing",
+            Method::March(_) if volume.uneven_slices_mm.is_some() => {
+                "slices are uneven, and blocks of cells are counted in even steps: every sample is taken"
+            }
             Method::March(_) => "every value counts, so no block of cells could be skipped",
             Method::Exact(_) => "the exact integrator skips cell by cell, by the values at their corners",
         };

@@ -7,6 +7,8 @@ use crate::volume::{Grid, Quantity, RgbaEncoding, Samples, Volume};
 pub struct VolumeInfo {
     /// Lattice and affine.
     pub grid: Grid,
+    /// Smallest and largest distance between neighbouring slices, mm, where it is uneven.
+    pub uneven_slices_mm: Option<[f64; 2]>,
     /// How samples are stored.
     pub storage: Storage,
     /// Smallest and largest value.
@@ -60,6 +62,13 @@ impl Storage {
 }
 
 impl VolumeInfo {
+    /// Smallest distance between neighbouring voxels along an axis, mm.
+    pub(super) fn smallest_spacing_mm(&self) -> f64 {
+        let spacing_mm = self.grid.spacing_mm();
+        let along_k = self.uneven_slices_mm.map_or(spacing_mm.z, |[least, _]| least);
+        spacing_mm.x.min(spacing_mm.y).min(along_k)
+    }
+
     /// Unit of the values, for messages.
     pub(super) fn unit(&self) -> &'static str {
         match self.quantity {
@@ -77,8 +86,10 @@ impl From<&Volume> for VolumeInfo {
             (Samples::Rgba16(_), Some(encoding)) => Storage::Rgba16(encoding),
             _ => Storage::F32,
         };
+        let uneven_slices_mm = volume.slices().map(|_| volume.slice_step_range_mm());
         VolumeInfo {
             grid: *volume.grid(),
+            uneven_slices_mm,
             storage,
             value_range: volume.value_range(),
             quantity: volume.quantity(),

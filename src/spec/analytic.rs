@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::PerAxis;
 
 /// A formula sampled on a lattice along the patient's axes, centred at the origin: its resolution by `size` and exactly
-/// one of `spacing_mm` and `extent_mm`.
+/// one of `spacing_mm` and `extent_mm`. With `planes_mm` these are of x and y alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AnalyticSpec {
@@ -20,6 +20,10 @@ pub struct AnalyticSpec {
     /// Distance between the first and the last voxel, mm: one number, or three. Thickness along an axis of one voxel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub extent_mm: Option<PerAxis<f64>>,
+    /// Positions of the slices along z in ascending order, mm, at any distances: a rectilinear lattice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 2, max = 4096))]
+    pub planes_mm: Option<Vec<f64>>,
 }
 
 /// A scalar field by formula; positions are LPS mm.

@@ -43,7 +43,7 @@ pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset};
 pub use per_axis::PerAxis;
 pub use pipeline::{
     AttenuationSpec, BackgroundSpec, Bits, ColorEncodingName, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec,
-    PhantomHead, PhantomRings, PhantomSpec, Pipeline, Series, ValuesName, VolumeSpec,
+    PhantomHead, PhantomRings, PhantomSpec, Pipeline, Series, SlicesName, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
 pub use schema::{pipeline_schema, preset_schema};
@@ -75,6 +75,8 @@ pub enum VolumeSource {
         path: PathBuf,
         /// Which series of a folder.
         series: Option<Series>,
+        /// Whether the distance between slices may change.
+        slices: Option<SlicesName>,
     },
     /// A volume made by rule.
     Phantom(PhantomSpec),
@@ -134,6 +136,7 @@ impl Spec {
             (None, None, source) => VolumeSource::File {
                 path: self.source.resolve("volume.source", source.as_deref().unwrap_or(Path::new(""))),
                 series: volume.series.clone(),
+                slices: volume.slices,
             },
         }
     }

@@ -21,11 +21,11 @@ pub enum PerAxis<T> {
 }
 
 impl<T: Copy> PerAxis<T> {
-    /// The numbers along `N` axes, or `None` for a list of another length.
-    pub fn along<const N: usize>(&self) -> Option<[T; N]> {
+    /// The numbers of `axes` axes, or `None` for a list of another length.
+    pub fn numbers(&self, axes: usize) -> Option<Vec<T>> {
         match self {
-            PerAxis::All(number) => Some([*number; N]),
-            PerAxis::Each(numbers) => numbers.as_slice().try_into().ok(),
+            PerAxis::All(number) => Some(vec![*number; axes]),
+            PerAxis::Each(numbers) => (numbers.len() == axes).then(|| numbers.clone()),
         }
     }
 }

@@ -65,6 +65,10 @@ pub struct VolumeSpec {
     /// Which series of a DICOM folder: `largest`, the default, or a Series Instance UID.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Series>,
+    /// Whether the distance between DICOM slices may change: `even`, the default, refuses such a series, `uneven` renders
+    /// it as it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slices: Option<SlicesName>,
     /// What the values measure; by default what the file says, and arbitrary for a formula.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub values: Option<ValuesName>,
@@ -146,6 +150,16 @@ impl From<Series> for String {
             Series::Uid(uid) => uid,
         }
     }
+}
+
+/// Whether the distance between slices may change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SlicesName {
+    /// It must not.
+    Even,
+    /// It may; nothing is resampled.
+    Uneven,
 }
 
 /// What the values of a volume measure.

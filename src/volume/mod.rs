@@ -5,6 +5,10 @@
 //! `A`, and nothing is resampled. The domain is the hull of the lattice points; an axis with one voxel is constant across
 //! its own spacing, from index -1/2 to +1/2. Between lattice points the value is interpolated trilinearly.
 //!
+//! A lattice may be rectilinear: its slices at uneven distances, in a table `p` of places along k ([`Slices`]). The voxel
+//! `(i, j, k)` is then the point `A · (i, j, p_k)`, a cell is the box between neighbouring lattice points, and inside it the
+//! value is trilinear as in any other. Nothing is resampled: a ray is straight in `(i, j, p)` as it is in space.
+//!
 //! The value of a voxel is `slope · stored + intercept`, in HU for CT ([`Rescale`]). Samples stay at 16 bits in memory
 //! wherever the source has no more ([`Samples`]).
 //!
@@ -16,11 +20,15 @@ mod digest;
 mod grid;
 mod rgba;
 mod samples;
+mod slices;
 
 pub use classes::Classes;
 pub use grid::Grid;
 pub use rgba::{ColorEncoding, RgbaEncoding};
 pub use samples::{Rescale, Samples};
+pub use slices::Slices;
+
+use glam::DVec3;
 
 use crate::error::{Error, Fault, Result};
 
@@ -37,6 +45,7 @@ pub enum Quantity {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Volume {
     grid: Grid,
+    slices: Option<Slices>,
     samples: Samples,
     rescale: Rescale,
     quantity: Quantity,
@@ -73,7 +82,45 @@ impl Volume {
         let default =
             RgbaEncoding { opacity_length_mm: grid.spacing_mm().min_element(), color: ColorEncoding::default() };
         let rgba = samples.are_rgba().then_some(default);
-        Ok(Volume { grid, samples, rescale, quantity, classes: None, rgba })
+        Ok(Volume { grid, slices: None, samples, rescale, quantity, classes: None, rgba })
+    }
+
+    /// The same samples on a rectilinear lattice: the grid's first and last slice stay, the others move to their places.
+    ///
+    /// # Errors
+    /// `Fault::Geometry` if there are more or fewer places than slices.
+    pub fn with_slices(mut self, slices: Slices) -> Result<Self> {
+        let ([.., expected], found) = (self.grid.dims(), slices.positions().len());
+        if found != expected {
+            return Err(Error::new(Fault::Geometry, "the number of places does not match the slices")
+                .found(found.to_string())
+                .expected(expected.to_string()));
+        }
+        self.slices = Some(slices);
+        Ok(self)
+    }
+
+    /// Where the slices lie, for a rectilinear lattice; `None` where they are one step apart.
+    pub fn slices(&self) -> Option<&Slices> {
+        self.slices.as_ref()
+    }
+
+    /// Place of a voxel, LPS mm. Panics outside a rectilinear lattice.
+    pub fn voxel_mm(&self, [i, j, k]: [usize; 3]) -> DVec3 {
+        let p = self.slices.as_ref().map_or(k as f64, |slices| slices.positions()[k]);
+        self.grid.index_to_lps_mm().transform_point3(DVec3::new(i as f64, j as f64, p))
+    }
+
+    /// Distance of each slice from the first along k, mm, for a rectilinear lattice.
+    pub fn slice_positions_mm(&self) -> Option<Vec<f64>> {
+        let step_mm = self.grid.spacing_mm().z;
+        self.slices.as_ref().map(|slices| slices.positions().iter().map(|p| p * step_mm).collect())
+    }
+
+    /// Smallest and largest distance between neighbouring slices along k, mm; the spacing of the grid if they are even.
+    pub fn slice_step_range_mm(&self) -> [f64; 2] {
+        let step_mm = self.grid.spacing_mm().z;
+        self.slices.as_ref().map_or([1.0; 2], Slices::step_range).map(|steps| steps * step_mm)
     }
 
     /// Lattice and affine.

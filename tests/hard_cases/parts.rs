@@ -77,7 +77,7 @@ fn assert_in_range<V: Voxel>(channel: &str, field: &Trilinear<'_, V>, dims: [usi
         let position = Position::new(at, dims);
         let [i, j, k] = position.block(Macrocells::LOG2_CELLS);
         let [low, high] = macrocells.ranges()[i + across * (j + down * k)];
-        let found = field.value(&position.cell());
+        let found = field.value(&field.cell(position));
         assert!(low - 1e-3 <= found && found <= high + 1e-3, "{channel} at {at}: {found} not in [{low}, {high}]");
     }
 }

@@ -56,7 +56,8 @@ fn colors_are_srgb_in_hexadecimal_and_linear_in_numbers() {
 fn paths_are_relative_to_the_pipeline() {
     let text = SHORT.replace("phantom: head", "source: ../scans/head, series: largest");
     let spec = pellucid::spec::Spec::from_text(&text, Path::new("pipelines/a.yaml"), &[]).unwrap();
-    let expected = VolumeSource::File { path: PathBuf::from("pipelines/../scans/head"), series: Some(Series::Largest) };
+    let path = PathBuf::from("pipelines/../scans/head");
+    let expected = VolumeSource::File { path, series: Some(Series::Largest), slices: None };
     assert_eq!(spec.volume_source(), expected);
     assert_eq!(spec.output(), None);
     let text = format!("{text}output: /pictures/head.png\n");

@@ -31,8 +31,11 @@ pub(super) struct VolumeReport {
     pub(super) dims: [usize; 3],
     /// Voxel index to LPS mm, three rows of four numbers.
     pub(super) index_to_lps_mm: [[f64; 4]; 3],
-    /// Length of one step along i, j and k, mm.
+    /// Length of one step along i, j and k, mm; the mean step along k where slices are uneven.
     pub(super) spacing_mm: [f64; 3],
+    /// Distance of each slice from the first along k, mm, where they are uneven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) slice_positions_mm: Option<Vec<f64>>,
     /// Smallest and largest value.
     pub(super) value_range: [f64; 2],
     /// What the values measure: `hu` or `arbitrary`; `rgba` where they are the alphas of colours.
@@ -114,6 +117,7 @@ impl From<&Volume> for VolumeReport {
             dims: volume.grid().dims(),
             index_to_lps_mm: volume.grid().index_to_lps_mm_rows(),
             spacing_mm: volume.grid().spacing_mm().to_array(),
+            slice_positions_mm: volume.slice_positions_mm(),
             value_range: volume.value_range(),
             quantity: match volume.quantity() {
                 _ if volume.samples().are_rgba() => "rgba",

@@ -47,7 +47,7 @@ fn volume_rows(volume: &VolumeReport) -> Vec<(String, String)> {
     let [x, y, z] = volume.index_to_lps_mm.map(|row| row[3]);
     let rows = [
         ("dimensions", format!("{nx} x {ny} x {nz} voxels")),
-        ("spacing", format!("{sx:.4} x {sy:.4} x {sz:.4} mm")),
+        ("spacing", format!("{sx:.4} x {sy:.4} x {} mm", between_slices(volume, sz))),
         (
             "axes",
             ["i", "j", "k"]
@@ -62,6 +62,14 @@ fn volume_rows(volume: &VolumeReport) -> Vec<(String, String)> {
         ("values SHA-256", volume.values_sha256.clone()),
     ];
     rows.map(|(label, text)| (label.to_string(), text)).to_vec()
+}
+
+/// The distance between slices, mm: one number, or from the smallest to the largest.
+fn between_slices(volume: &VolumeReport, mean_mm: f64) -> String {
+    let Some(positions_mm) = &volume.slice_positions_mm else { return format!("{mean_mm:.4}") };
+    let steps = positions_mm.windows(2).map(|pair| pair[1] - pair[0]);
+    let (least, most) = steps.fold((f64::INFINITY, 0.0f64), |(least, most), step| (least.min(step), most.max(step)));
+    format!("{least:.4} to {most:.4} (uneven)")
 }
 
 /// Where an axis leads, to the nearest of the patient's six directions.
@@ -112,6 +120,7 @@ mod tests {
             dims: [2, 3, 4],
             index_to_lps_mm,
             spacing_mm: [1.0, 1.0, 2.0],
+            slice_positions_mm: None,
             value_range: [-1000.0, 3000.0],
             quantity: "hu",
             values_sha256: "00".to_string(),

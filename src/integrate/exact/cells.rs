@@ -2,12 +2,57 @@
 //!
 //! All crossings are computed from the ray's entry into the volume, in f64, and never accumulated, so that no error grows
 //! along the ray; inside a cell coordinates are in `[0, 1]`, and f32 is enough.
+//!
+//! A face across an axis is a plane of lattice points: across k at its place in a table where slices are uneven.
 
 use glam::DVec3;
 
 use super::super::chord::Chord;
-use crate::scene::{Clip, Ray};
-use crate::volume::Grid;
+use crate::scene::{Clip, Ray, Scene};
+use crate::volume::{Grid, Slices, Volume};
+
+/// Where rays are followed: the hull of a lattice, less what is clipped away.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Domain<'a> {
+    grid: &'a Grid,
+    clip: &'a Clip,
+    /// Places of slices at uneven distances.
+    slices: Option<&'a [f64]>,
+}
+
+impl<'a> Domain<'a> {
+    pub(super) fn new(volume: &'a Volume, scene: &'a Scene) -> Self {
+        Domain::of(volume, &scene.effects.clip)
+    }
+
+    pub(super) fn of(volume: &'a Volume, clip: &'a Clip) -> Self {
+        Domain { grid: volume.grid(), clip, slices: volume.slices().map(Slices::positions) }
+    }
+
+    /// The part of a ray inside, or `None` if there is none.
+    pub(super) fn inside(&self, ray: &Ray) -> Option<IndexRay> {
+        let mut chord = Chord::new(self.grid, self.clip, *ray)?;
+        let (low, high) = self.grid.index_bounds();
+        chord.entry_index = chord.entry_index.clamp(low, high);
+        Some(IndexRay { chord })
+    }
+
+    /// The part inside the hull of a ray from a lattice point, and where along it nothing is clipped away, mm.
+    pub(super) fn from_voxel(&self, voxel: [usize; 3], direction: DVec3) -> Option<(IndexRay, [f64; 2])> {
+        let mut index = DVec3::from_array(voxel.map(|i| i as f64));
+        if let Some(places) = self.slices {
+            index.z = places[voxel[2]];
+        }
+        let ray = Ray { origin_mm: self.grid.index_to_lps_mm().transform_point3(index), direction };
+        let chord = Chord::from_index(self.grid, index, direction)?;
+        Some((IndexRay { chord }, self.clip.interval_mm(&ray)?))
+    }
+
+    /// The cells of a ray inside, front to back.
+    pub(super) fn segments(&self, ray: IndexRay) -> Segments<'a> {
+        ray.segments(self.grid.dims(), self.slices)
+    }
+}
 
 /// A ray inside a volume.
 #[derive(Debug, Clone, Copy)]
@@ -45,19 +90,6 @@ impl Segment {
 }
 
 impl IndexRay {
-    /// The part of a ray inside the domain of a grid and not clipped away, or `None` if there is none.
-    pub(super) fn new(ray: &Ray, grid: &Grid, clip: &Clip) -> Option<Self> {
-        let mut chord = Chord::new(grid, clip, *ray)?;
-        let (low, high) = grid.index_bounds();
-        chord.entry_index = chord.entry_index.clamp(low, high);
-        Some(IndexRay { chord })
-    }
-
-    /// The part inside the domain of a ray from a lattice point.
-    pub(super) fn from_voxel(grid: &Grid, voxel: [usize; 3], direction: DVec3) -> Option<Self> {
-        Chord::from_voxel(grid, voxel, direction).map(|chord| IndexRay { chord })
-    }
-
     /// Where it enters, mm from its origin.
     pub(super) fn enter_mm(&self) -> f64 {
         self.chord.entry_mm
@@ -73,20 +105,26 @@ impl IndexRay {
         self.chord.length_mm
     }
 
-    /// The cells of the ray, front to back; without gaps or overlaps, none of length 0.
-    pub(super) fn segments(self, grid: &Grid) -> Segments {
-        let dims = grid.dims();
+    /// The cells of the ray in a lattice of `dims` voxels, front to back; without gaps or overlaps, none of length 0.
+    /// `slices` are the places of slices at uneven distances.
+    fn segments(self, dims: [usize; 3], slices: Option<&[f64]>) -> Segments<'_> {
         let last_cell = dims.map(|n| n.saturating_sub(2));
         let mut cell = [0; 3];
         let mut next_mm = [f64::INFINITY; 3];
         for axis in 0..3 {
             let p = self.chord.entry_index[axis];
             // On a face, the cell that the ray is about to pass.
-            let index = if self.chord.index_per_mm[axis] < 0.0 { p.ceil() - 1.0 } else { p.floor() };
-            cell[axis] = index.clamp(0.0, last_cell[axis] as f64) as usize;
+            let falls = self.chord.index_per_mm[axis] < 0.0;
+            cell[axis] = match slices {
+                Some(places) if axis == 2 => {
+                    let passed = places.partition_point(|&face| if falls { face < p } else { face <= p });
+                    passed.saturating_sub(1).min(last_cell[axis])
+                }
+                _ => (if falls { p.ceil() - 1.0 } else { p.floor() }).clamp(0.0, last_cell[axis] as f64) as usize,
+            };
         }
-        let mut segments =
-            Segments { ray: self, last_cell, dims, cell, next_mm, at_mm: self.enter_mm(), exit_mm: self.exit_mm() };
+        let (at_mm, exit_mm) = (self.enter_mm(), self.exit_mm());
+        let mut segments = Segments { ray: self, last_cell, dims, slices, cell, next_mm, at_mm, exit_mm };
         for (axis, next) in next_mm.iter_mut().enumerate() {
             *next = segments.crossing_mm(axis);
         }
@@ -97,10 +135,12 @@ impl IndexRay {
 
 /// Iterator over the [`Segment`]s of a ray.
 #[derive(Debug, Clone)]
-pub(super) struct Segments {
+pub(super) struct Segments<'a> {
     ray: IndexRay,
     last_cell: [usize; 3],
     dims: [usize; 3],
+    /// Places of slices at uneven distances.
+    slices: Option<&'a [f64]>,
     cell: [usize; 3],
     /// Where the ray crosses the next face across each axis, mm from its origin.
     next_mm: [f64; 3],
@@ -108,7 +148,7 @@ pub(super) struct Segments {
     exit_mm: f64,
 }
 
-impl Segments {
+impl Segments<'_> {
     fn crossing_mm(&self, axis: usize) -> f64 {
         let d = self.ray.chord.index_per_mm[axis];
         let c = self.cell[axis];
@@ -116,17 +156,31 @@ impl Segments {
         if d == 0.0 || leaves_domain || self.dims[axis] == 1 {
             return f64::INFINITY;
         }
-        let face = (if d < 0.0 { c } else { c + 1 }) as f64;
+        let face = self.face(axis, if d < 0.0 { c } else { c + 1 });
         self.ray.enter_mm() + (face - self.ray.chord.entry_index[axis]) / d
     }
 
     fn local(&self, mm: f64) -> [f64; 3] {
         let p = self.ray.chord.index_at(mm - self.ray.enter_mm());
-        std::array::from_fn(|axis| (p[axis] - self.cell[axis] as f64).clamp(0.0, 1.0))
+        std::array::from_fn(|axis| {
+            let (corner, low) = (self.cell[axis], self.face(axis, self.cell[axis]));
+            match self.slices {
+                Some(places) if axis == 2 => ((p[axis] - low) / (places[corner + 1] - low)).clamp(0.0, 1.0),
+                _ => (p[axis] - low).clamp(0.0, 1.0),
+            }
+        })
+    }
+
+    /// Where a face across an axis lies, as a continuous index.
+    fn face(&self, axis: usize, number: usize) -> f64 {
+        match self.slices {
+            Some(places) if axis == 2 => places[number],
+            _ => number as f64,
+        }
     }
 }
 
-impl Iterator for Segments {
+impl Iterator for Segments<'_> {
     type Item = Segment;
 
     #[inline]
@@ -172,7 +226,9 @@ mod tests {
     fn walk(origin: DVec3, direction: DVec3, dims: [usize; 3]) -> Vec<Segment> {
         let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();
         let ray = Ray { origin_mm: origin, direction: direction.normalize() };
-        IndexRay::new(&ray, &grid, &Clip::default()).map(|r| r.segments(&grid).collect()).unwrap_or_default()
+        let clip = Clip::default();
+        let domain = Domain { grid: &grid, clip: &clip, slices: None };
+        domain.inside(&ray).map(|r| domain.segments(r).collect()).unwrap_or_default()
     }
 
     #[test]

@@ -5,7 +5,7 @@ use glam::DMat3;
 use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, trilinear_along};
 use crate::math::{Real, each};
-use crate::volume::{Rescale, Volume};
+use crate::volume::{Rescale, Slices, Volume};
 
 use super::cells::Segment;
 
@@ -16,17 +16,20 @@ pub(super) struct Lattice<'a, V> {
     dims: [usize; 3],
     /// Step in `samples` from a voxel to its upper neighbour in a cell; 0 along an axis of one voxel.
     steps: [usize; 3],
+    /// Places of slices at uneven distances.
+    slices: Option<&'a [f64]>,
     to_value_per_mm: DMat3,
 }
 
 impl<'a, V: Voxel> Lattice<'a, V> {
-    pub(super) fn new(volume: &Volume, samples: &'a [V]) -> Self {
+    pub(super) fn new(volume: &'a Volume, samples: &'a [V]) -> Self {
         let Rescale { slope, .. } = volume.rescale();
         let dims = volume.grid().dims();
         let [nx, ny, _] = dims;
         let strides = [1, nx, nx * ny];
         let steps = each(|a| if dims[a] == 1 { 0 } else { strides[a] });
-        Lattice { samples, dims, steps, to_value_per_mm: volume.grid().gradient_to_per_mm() * slope }
+        let slices = volume.slices().map(Slices::positions);
+        Lattice { samples, dims, steps, slices, to_value_per_mm: volume.grid().gradient_to_per_mm() * slope }
     }
 
     /// Stored samples at the corners of a cell, x fastest.
@@ -38,7 +41,8 @@ impl<'a, V: Voxel> Lattice<'a, V> {
         each(|c| real(self.samples[base + (c & 1) * sx + (c >> 1 & 1) * sy + (c >> 2) * sz]))
     }
 
-    /// Difference per index step along an axis at a voxel: central, one-sided at the border, 0 along an axis of one voxel.
+    /// Difference between the neighbours of a voxel along an axis over their distance in index steps: one-sided at the
+    /// border, 0 along an axis of one voxel.
     #[inline(always)]
     fn difference<R: Real>(&self, voxel: [usize; 3], axis: usize) -> R {
         let n = self.dims[axis];
@@ -51,6 +55,10 @@ impl<'a, V: Voxel> Lattice<'a, V> {
         let i = voxel[axis];
         let (low, high) = (if i > 0 { at - step } else { at }, if i + 1 < n { at + step } else { at });
         let difference = real::<R, V>(self.samples[high]) - real(self.samples[low]);
+        if let (2, Some(places)) = (axis, self.slices) {
+            let distance = places[(i + 1).min(n - 1)] - places[i.saturating_sub(1)];
+            return R::from_f64(1.0 / distance) * difference;
+        }
         if i > 0 && i + 1 < n { R::from_f64(0.5) * difference } else { difference }
     }
 

@@ -38,6 +38,7 @@ use super::light_volumes::LightVolumes;
 use super::texels::{Component, Rgba};
 use super::tiles::{self, Radiance};
 use super::{Rendered, Statistics};
+use cells::Domain;
 use depth::Extinction;
 use lattice::Lattice;
 use masked::Masked;
@@ -122,7 +123,7 @@ fn for_colors<'a, T: Component>(
 ) -> Box<dyn Tracer + 'a> {
     let Some(encoding) = volume.rgba_encoding() else { unreachable!("colours are understood in some way") };
     let name = format!("exact/{}/unlit/f64", T::NAME);
-    voxels::tracer(volume.grid(), &scene.effects.clip, Rgba::new(texels, encoding), tolerance, name)
+    voxels::tracer(volume, scene, Rgba::new(texels, encoding), tolerance, name)
 }
 
 fn for_samples<'a, V: Voxel>(
@@ -140,7 +141,7 @@ fn for_samples<'a, V: Voxel>(
             let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
             let lit = if scene.shading.is_some() { "lit" } else { "unlit" };
             let name = format!("exact/voxels/{classifier}/{lit}/f64");
-            return voxels::tracer(volume.grid(), &scene.effects.clip, classify_voxels(volume, scene), tolerance, name);
+            return voxels::tracer(volume, scene, classify_voxels(volume, scene), tolerance, name);
         }
         Model::Value(model) if !model.of.reads_transfer_function() => {
             let trace = move |ray: &Ray| models::show_value(&lattice, &shown, rescale, model, ray);
@@ -203,13 +204,13 @@ impl<'a> Of<'a> {
         single: Option<S>,
     ) -> Box<dyn Tracer + 'a> {
         let Of { volume, scene, tolerance, voxel } = self;
-        let (grid, clip) = (volume.grid(), &scene.effects.clip);
+        let domain = Domain::new(volume, scene);
         let name = |what: &str, real: &str| format!("exact/{voxel}/{classifier}/{what}/{real}");
         if let Model::Value(model) = &scene.model {
-            let trace = move |ray: &Ray| models::show_depth(&double, grid, clip, model, ray);
+            let trace = move |ray: &Ray| models::show_depth(&double, &domain, model, ray);
             return Box::new(Direct { trace, name: name(model.of.name(), "f64") });
         }
-        let frame = Frame { grid, clip, tolerance, brightest: Brightest::of(scene) };
+        let frame = Frame { domain, tolerance, brightest: Brightest::of(scene) };
         if scene.effects.change_light() {
             let lights = LightVolumes::new(volume, scene);
             let name = name("atmosphere", "f64");

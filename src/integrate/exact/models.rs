@@ -1,11 +1,11 @@
 //! Pictures that are not of light: one number of what lies along a ray, or level surfaces. In f64, exact up to rounding.
 
 use crate::field::Voxel;
-use crate::scene::{Clip, Ray, Scene, Surface, ValueModel, ValueOf};
-use crate::volume::{Grid, Rescale};
+use crate::scene::{Ray, Scene, Surface, ValueModel, ValueOf};
+use crate::volume::Rescale;
 
 use super::Traced;
-use super::cells::{IndexRay, Segment};
+use super::cells::{Domain, Segment};
 use super::depth::{Extinction, optical_depth};
 use super::lattice::Lattice;
 use super::peak::Peak;
@@ -23,8 +23,8 @@ pub(super) fn show_value<V: Voxel>(
     model: &ValueModel,
     ray: &Ray,
 ) -> Option<Traced> {
-    let inside = shown.inside(ray)?;
-    let segments = || inside.segments(shown.grid);
+    let inside = shown.domain.inside(ray)?;
+    let segments = || shown.domain.segments(inside);
     let number = match shown.hiding {
         None => number(lattice, segments(), inside.length_mm(), rescale, model)?,
         Some(hiding) => {
@@ -71,12 +71,11 @@ fn number<V: Voxel>(
 /// Shows the optical depth along a ray.
 pub(super) fn show_depth<M: Extinction>(
     medium: &M,
-    grid: &Grid,
-    clip: &Clip,
+    domain: &Domain<'_>,
     model: &ValueModel,
     ray: &Ray,
 ) -> Option<Traced> {
-    Some(in_grey(model, optical_depth(medium, IndexRay::new(ray, grid, clip)?.segments(grid))))
+    Some(in_grey(model, optical_depth(medium, domain.segments(domain.inside(ray)?))))
 }
 
 fn in_grey(model: &ValueModel, number: f64) -> Traced {
@@ -107,7 +106,7 @@ pub(super) fn show_surfaces<V: Voxel>(
         traced.pieces += 1;
         traced.transmittance > 0.0
     };
-    let segments = shown.inside(ray).into_iter().flat_map(|inside| inside.segments(shown.grid));
+    let segments = shown.domain.inside(ray).into_iter().flat_map(|inside| shown.domain.segments(inside));
     let sign = rescale.slope.signum();
     match shown.hiding {
         None => crossings(lattice, segments.map(Passed::Shown), sign, &levels, composite),

@@ -52,7 +52,7 @@ impl Peak {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrate::exact::cells::IndexRay;
+    use crate::integrate::exact::cells::Domain;
     use crate::scene::{Clip, Ray};
     use crate::volume::{Grid, Quantity, Rescale, Samples, Volume};
     use glam::DVec3;
@@ -67,8 +67,10 @@ mod tests {
         let (x, direction) = if backwards { (n as f64 + 3.0, -DVec3::X) } else { (-3.0, DVec3::X) };
         let ray = Ray { origin_mm: DVec3::new(x, 0.37, 0.81), direction };
         let peak = Peak { sign: 1.0, threshold, fall: 1e-9 };
-        let inside = IndexRay::new(&ray, &grid, &Clip::default()).expect("the ray meets the volume");
-        peak.first(&Lattice::new(&volume, samples), inside.segments(&grid)).expect("of finite values")
+        let clip = Clip::default();
+        let domain = Domain::of(&volume, &clip);
+        let inside = domain.inside(&ray).expect("the ray meets the volume");
+        peak.first(&Lattice::new(&volume, samples), domain.segments(inside)).expect("of finite values")
     }
 
     #[test]

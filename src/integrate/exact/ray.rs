@@ -1,12 +1,11 @@
 //! One ray, cell by cell and piece by piece, within its budget.
 
 use crate::math::Real;
-use crate::scene::{Clip, Ray, Scene};
+use crate::scene::{Ray, Scene};
 use crate::transfer::{Optics, Side, TransferFunction};
-use crate::volume::Grid;
 
 use super::budget::Budget;
-use super::cells::IndexRay;
+use super::cells::Domain;
 use super::medium::Medium;
 use super::shade::Shader;
 use super::splits::Splits;
@@ -35,8 +34,7 @@ pub struct Traced {
 /// What all rays of a frame share.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame<'a> {
-    pub(super) grid: &'a Grid,
-    pub(super) clip: &'a Clip,
+    pub(super) domain: Domain<'a>,
     pub(super) tolerance: f64,
     pub(super) brightest: Brightest,
 }
@@ -135,13 +133,13 @@ impl Frame<'_> {
     ) -> Option<Traced> {
         let mut light = Front::new(Budget::new(self.tolerance));
         let space = |length_mm: f64| shader.space(R::from_f64(length_mm));
-        let Some(inside) = IndexRay::new(ray, self.grid, self.clip) else {
+        let Some(inside) = self.domain.inside(ray) else {
             light.cross(space(shader.space_end_mm()?));
             return Some(light.ended(0.0));
         };
         let end_mm = shader.space_end_mm().unwrap_or(inside.exit_mm());
         light.cross(space(inside.enter_mm()));
-        for segment in inside.segments(self.grid) {
+        for segment in self.domain.segments(inside) {
             let Some(fields) = medium.fields(&segment) else {
                 light.cross(space(segment.length_mm));
                 continue;

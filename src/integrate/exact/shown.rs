@@ -1,16 +1,15 @@
 //! Where values count: inside the clip, and not where a mask hides them.
 
-use crate::scene::{Clip, Mask, Ray, Scene};
-use crate::volume::{Grid, Volume};
+use crate::scene::{Mask, Scene};
+use crate::volume::Volume;
 
-use super::cells::{IndexRay, Segment};
+use super::cells::{Domain, Segment};
 use super::nearest::Nearest;
 
 /// The part of a volume whose values count.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shown<'a> {
-    pub(super) grid: &'a Grid,
-    clip: &'a Clip,
+    pub(super) domain: Domain<'a>,
     /// `None` if nothing is hidden.
     pub(super) hiding: Option<Hiding<'a>>,
 }
@@ -43,15 +42,9 @@ impl Passed {
 
 impl<'a> Shown<'a> {
     pub(super) fn new(volume: &'a Volume, scene: &'a Scene) -> Self {
-        let (grid, effects) = (volume.grid(), &scene.effects);
-        let hiding = effects.mask.as_ref().zip(volume.classes());
-        let hiding = hiding.map(|(mask, classes)| Hiding { mask, nearest: Nearest::new(classes, grid) });
-        Shown { grid, clip: &effects.clip, hiding }
-    }
-
-    /// The part of a ray inside the volume and not clipped away.
-    pub(super) fn inside(&self, ray: &Ray) -> Option<IndexRay> {
-        IndexRay::new(ray, self.grid, self.clip)
+        let hiding = scene.effects.mask.as_ref().zip(volume.classes());
+        let hiding = hiding.map(|(mask, classes)| Hiding { mask, nearest: Nearest::new(classes, volume.grid()) });
+        Shown { domain: Domain::new(volume, scene), hiding }
     }
 }
 

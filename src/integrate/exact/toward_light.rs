@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use crate::classify::{Baked, BakedAlike, bake, bake_alike};
 use crate::field::Voxel;
-use crate::scene::{Clip, Ray, Scene};
-use crate::volume::{Grid, Samples, Volume};
+use crate::scene::Scene;
+use crate::volume::{Samples, Volume};
 
-use super::cells::IndexRay;
+use super::cells::Domain;
 use super::lattice::Lattice;
 use super::masked::Masked;
 use super::medium::{Classified, Medium};
@@ -34,7 +34,7 @@ pub(in super::super) fn toward_light<'a>(volume: &'a Volume, scene: &'a Scene) -
 
 fn for_samples<'a, V: Voxel>(volume: &'a Volume, scene: &'a Scene, samples: &'a [V]) -> TowardLight<'a> {
     let lattice = Lattice::new(volume, samples);
-    let occluder = Occluder { grid: volume.grid(), clip: &scene.effects.clip };
+    let occluder = Occluder { domain: Domain::new(volume, scene) };
     if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
         let nearest = Nearest::new(classes, volume.grid());
         return match bake_alike::<f64>(&mask.functions(classes.count(), &scene.transfer_function), volume.rescale()) {
@@ -64,22 +64,15 @@ fn for_samples<'a, V: Voxel>(volume: &'a Volume, scene: &'a Scene, samples: &'a 
 
 /// What stands in a light's way.
 struct Occluder<'a> {
-    grid: &'a Grid,
-    clip: &'a Clip,
+    domain: Domain<'a>,
 }
 
 impl Occluder<'_> {
     fn transmittance<M: Medium<f64>>(&self, medium: &M, voxel: [usize; 3], direction: DVec3) -> f64 {
-        let index = DVec3::from_array(voxel.map(|i| i as f64));
-        let ray = Ray { origin_mm: self.grid.index_to_lps_mm().transform_point3(index), direction };
-        let (Some(inside), Some([from_mm, to_mm])) =
-            (IndexRay::from_voxel(self.grid, voxel, direction), self.clip.interval_mm(&ray))
-        else {
-            return 1.0;
-        };
+        let Some((inside, [from_mm, to_mm])) = self.domain.from_voxel(voxel, direction) else { return 1.0 };
         let mut transmittance = 1.0;
         let mut splits = Splits::default();
-        for segment in inside.segments(self.grid) {
+        for segment in self.domain.segments(inside) {
             let front_mm = segment.exit_mm - segment.length_mm;
             let Some(fields) = medium.fields(&segment) else { continue };
             splits.restart(0.0);

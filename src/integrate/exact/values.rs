@@ -142,7 +142,7 @@ fn flips(cubic: &Cubic<f64>, level: f64, inside: &mut Option<bool>, mut at: impl
 
 #[cfg(test)]
 mod tests {
-    use super::super::cells::IndexRay;
+    use super::super::cells::Domain;
     use super::*;
     use crate::scene::{Clip, Ray};
     use crate::volume::{Grid, Quantity, Rescale, Samples, Volume};
@@ -168,12 +168,11 @@ mod tests {
         })
     }
 
-    fn inside(volume: &Volume, ray: &Ray) -> Option<IndexRay> {
-        IndexRay::new(ray, volume.grid(), &Clip::default())
-    }
+    static ALL: Clip = Clip { half_spaces: Vec::new() };
 
-    fn segments(volume: &Volume, ray: &Ray) -> impl Iterator<Item = Segment> {
-        inside(volume, ray).into_iter().flat_map(|inside| inside.segments(volume.grid()))
+    fn segments<'a>(volume: &'a Volume, ray: &Ray) -> impl Iterator<Item = Segment> + 'a {
+        let domain = Domain::of(volume, &ALL);
+        domain.inside(ray).into_iter().flat_map(move |inside| domain.segments(inside))
     }
 
     /// Values at many points of a ray.
@@ -207,9 +206,9 @@ mod tests {
         let grid = Grid::axis_aligned([6, 5, 4], DVec3::ONE).unwrap();
         let volume = Volume::new(grid, Samples::I16(samples), Rescale::IDENTITY, Quantity::Hu).unwrap();
         for ray in rays() {
-            let Some(inside) = inside(&volume, &ray) else { continue };
+            let Some(inside) = Domain::of(&volume, &ALL).inside(&ray) else { continue };
             let middle = ray.origin_mm + 0.5 * (inside.enter_mm() + inside.exit_mm()) * ray.direction;
-            let found = integral(&lattice(&volume), inside.segments(&grid)) / inside.length_mm();
+            let found = integral(&lattice(&volume), segments(&volume, &ray)) / inside.length_mm();
             let expected = 10.0 * middle.x + 7.0 * middle.y - 30.0 * middle.z;
             assert!((found - expected).abs() < 1e-10, "found {found}, expected {expected}");
         }

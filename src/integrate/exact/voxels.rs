@@ -6,10 +6,10 @@ use crate::field::Corners;
 use crate::integrate::texels::Texels;
 use crate::math::bernstein::{Cubic, restrict};
 use crate::math::each;
-use crate::scene::{Clip, Ray};
-use crate::volume::Grid;
+use crate::scene::{Ray, Scene};
+use crate::volume::Volume;
 
-use super::cells::Segment;
+use super::cells::{Domain, Segment};
 use super::lattice::along;
 use super::medium::Medium;
 use super::piece::{Integral, Optics};
@@ -27,14 +27,14 @@ struct AtVoxels<T> {
 
 /// Traces rays through a medium given at the voxels; shading is in the texels already.
 pub(super) fn tracer<'a, T: Texels<f64> + 'a>(
-    grid: &'a Grid,
-    clip: &'a Clip,
+    volume: &'a Volume,
+    scene: &'a Scene,
     texels: T,
     tolerance: f64,
     name: String,
 ) -> Box<dyn Tracer + 'a> {
-    let frame = Frame { grid, clip, tolerance, brightest: brightest(&texels) };
-    let medium = AtVoxels { corners: Corners::new(grid.dims()), texels };
+    let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest: brightest(&texels) };
+    let medium = AtVoxels { corners: Corners::new(volume.grid().dims()), texels };
     let trace = move |ray: &Ray| frame.trace(ray, &medium, &Unlit, &mut Splits::default());
     Box::new(Direct { trace, name })
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::by_place::ByPlace;
 use crate::classify::Rgbs;
-use crate::field::{GradientUnits, Position, Trilinear, Voxel};
+use crate::field::{GradientUnits, Position, Spacing, Trilinear, Voxel};
 use crate::integrate::shade::{Shader, Spot};
 use crate::scene::Haze;
 
@@ -33,8 +33,8 @@ pub(in super::super) trait Medium: Sync {
 }
 
 /// A scalar field, classified and shaded at each sample.
-pub(in super::super) struct Classified<'a, V, C, S> {
-    pub(in super::super) field: Trilinear<'a, V>,
+pub(in super::super) struct Classified<'a, V, K, C, S> {
+    pub(in super::super) field: Trilinear<'a, V, K>,
     /// The gradient magnitude, HU/mm; there if the transfer function reads it.
     pub(in super::super) magnitude: Option<Trilinear<'a, f32>>,
     pub(in super::super) units: GradientUnits,
@@ -42,7 +42,7 @@ pub(in super::super) struct Classified<'a, V, C, S> {
     pub(in super::super) shader: &'a S,
 }
 
-impl<V: Voxel, C: ByPlace, S: Shader> Medium for Classified<'_, V, C, S> {
+impl<V: Voxel, K: Spacing, C: ByPlace, S: Shader> Medium for Classified<'_, V, K, C, S> {
     type Aim = S::Aim;
 
     fn aim(&self, direction: DVec3, aim: &mut S::Aim) {
@@ -51,7 +51,7 @@ impl<V: Voxel, C: ByPlace, S: Shader> Medium for Classified<'_, V, C, S> {
 
     #[inline(always)]
     fn sample(&self, aim: &S::Aim, position: Position, distance_mm: f64) -> Rgbs<f32> {
-        let cell = position.cell();
+        let cell = self.field.cell(position);
         let magnitude = match &self.magnitude {
             Some(magnitude) if C::READS_GRADIENT => magnitude.value(&cell),
             _ => 0.0,

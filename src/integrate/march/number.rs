@@ -151,7 +151,7 @@ impl<P: Probe, G: Gather> Walker<P, G> {
             let mut run = [0.0; RUN];
             let run = &mut run[..RUN.min(leap.samples).min(left)];
             for (i, out) in run.iter_mut().enumerate() {
-                *out = self.probe.at(&first.advanced(pace.step, visited + i).cell());
+                *out = self.probe.at(&first.advanced(pace.step, visited + i).even_cell());
             }
             self.gather.take(gathered, run, stretch.delta_mm);
             *samples += run.len() as u64;

@@ -104,7 +104,7 @@ impl<V: Voxel> Kernel<'_, V> {
         let pace = Pace::new(first.step_to(last, intervals));
         let spacing_mm = (stretch.last_mm - stretch.first_mm) / intervals.max(1) as f64;
         let visit = |walk: &mut Walk<'_>, i: usize| {
-            let stored = f64::from(self.field.value(&first.advanced(pace.step, i).cell()));
+            let stored = f64::from(self.field.value(&first.advanced(pace.step, i).even_cell()));
             walk.samples += 1;
             self.reach(walk, (stretch.first_mm + i as f64 * spacing_mm, stored));
         };
@@ -159,7 +159,7 @@ impl<V: Voxel> Kernel<'_, V> {
     fn crossing(&self, chord: &Chord, mut from: Sample, mut to: Sample, level: f64) -> f64 {
         for _ in 0..self.bisections {
             let middle_mm = 0.5 * (from.0 + to.0);
-            let cell = Position::new(chord.index_at(middle_mm), self.field.dims()).cell();
+            let cell = Position::new(chord.index_at(middle_mm), self.field.dims()).even_cell();
             let middle = (middle_mm, f64::from(self.field.value(&cell)));
             if self.is_inside(middle.1, level) == self.is_inside(from.1, level) {
                 from = middle;
@@ -174,7 +174,7 @@ impl<V: Voxel> Kernel<'_, V> {
     fn composite(&self, walk: &mut Walk<'_>, at_mm: f64, &Surface { opacity, color, .. }: &Surface) {
         // Nobody reads the gradient of what is not lit.
         let gradient = self.scene.shading.as_ref().map_or([0.0; 3], |_| {
-            let cell = Position::new(walk.chord.index_at(at_mm), self.field.dims()).cell();
+            let cell = Position::new(walk.chord.index_at(at_mm), self.field.dims()).even_cell();
             self.units.per_mm(self.field.gradient_per_index(&cell)).map(f64::from)
         });
         // Between surfaces nothing absorbs, so that they cast no shadows.

@@ -37,7 +37,7 @@ impl<T: Texels<f32>> Medium for AtVoxels<T> {
 
     #[inline(always)]
     fn sample(&self, (): &(), position: Position, _: f64) -> Rgbs<f32> {
-        let cell = position.cell();
+        let cell = position.even_cell();
         let [u, v, w] = cell.fraction;
         let at = self.corners.of(cell.corner).map(|voxel| Vec4::from_array(self.texels.optics(voxel)));
         let row = |c: usize| at[c] + (at[c + 1] - at[c]) * u;

@@ -19,8 +19,8 @@ pub(super) struct SeriesAttributes {
     pub(super) cosines: [f64; 6],
     /// Between rows, then between columns.
     pub(super) pixel_spacing_mm: [f64; 2],
-    /// Between slices, along the normal.
-    pub(super) slice_spacing_mm: f64,
+    /// Between slices, along the normal; `None` if it is not the same everywhere.
+    pub(super) slice_spacing_mm: Option<f64>,
     /// Slope and intercept, as DS.
     pub(super) rescale: [String; 2],
     /// HU, or US for "unspecified" (PS3.3 §C.11.1.1.2).
@@ -94,16 +94,19 @@ impl SeriesAttributes {
     /// General Equipment, General Image, Image Plane: §C.7.5.1, §C.7.6.1, §C.7.6.2.
     fn equipment_and_plane(&self, k: usize, position_mm: [f64; 3]) -> Vec<InMemElement> {
         let list = |numbers: &[f64]| numbers.iter().map(|&number| nearest(number)).collect::<Vec<_>>().join("\\");
-        vec![
+        let spacing = self.slice_spacing_mm.map(nearest);
+        let mut elements = vec![
             element(tags::MANUFACTURER, VR::LO, "pellucid"),
             element(tags::IMAGE_TYPE, VR::CS, "DERIVED\\SECONDARY\\AXIAL"),
             element(tags::INSTANCE_NUMBER, VR::IS, (k + 1).to_string()),
             element(tags::PIXEL_SPACING, VR::DS, list(&self.pixel_spacing_mm)),
             element(tags::IMAGE_ORIENTATION_PATIENT, VR::DS, list(&self.cosines)),
             element(tags::IMAGE_POSITION_PATIENT, VR::DS, list(&position_mm)),
-            element(tags::SLICE_THICKNESS, VR::DS, nearest(self.slice_spacing_mm)),
-            element(tags::SPACING_BETWEEN_SLICES, VR::DS, nearest(self.slice_spacing_mm)),
-        ]
+            // Type 2: empty where there is none to tell.
+            element(tags::SLICE_THICKNESS, VR::DS, spacing.clone().unwrap_or_default()),
+        ];
+        elements.extend(spacing.map(|mm| element(tags::SPACING_BETWEEN_SLICES, VR::DS, mm)));
+        elements
     }
 
     /// Image Pixel, CT Image: §C.7.6.3, §C.8.2.1.

@@ -3,14 +3,15 @@
 //! Slices are sorted by their position along the normal, `ImagePositionPatient · (row × column)`; instance numbers play no
 //! part, because nothing ties them to space. The step along k is `(last - first) / (n - 1)`: along the normal for plain
 //! scans, and sheared against it under gantry tilt, which an affine map holds without resampling. Then every slice must lie
-//! where the lattice puts it.
+//! where the lattice puts it: at even steps, or, if that is asked for, at its own place along the step.
 
-use glam::{DAffine3, DMat3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::header::Pose;
 use super::series::Slice;
-use super::spacing::{Ordered, listed, tolerance_mm};
+use super::spacing::{Ordered, SliceSpacing, listed, tolerance_mm};
 use crate::error::{Error, Fault, Result};
+use crate::volume::Slices;
 
 /// Slices in order, and their lattice.
 #[derive(Debug, Clone)]
@@ -18,7 +19,9 @@ pub(super) struct Stack {
     /// Indices into the slices given, in order along k.
     pub(super) order: Vec<usize>,
     pub(super) index_to_lps_mm: DAffine3,
-    /// Distance between neighbouring slices along the normal.
+    /// Their places, where they are uneven.
+    pub(super) slices: Option<Slices>,
+    /// Distance between neighbouring slices along the normal; the mean if they are uneven.
     pub(super) spacing_mm: f64,
     /// Positions of the first and last slice along the normal.
     pub(super) range_mm: [f64; 2],
@@ -34,7 +37,7 @@ pub(super) struct Stack {
 
 impl Stack {
     /// The stack of these slices, whose orientation and pixel spacing agree.
-    pub(super) fn of(slices: &[Slice]) -> Result<Self> {
+    pub(super) fn of(slices: &[Slice], spacing: SliceSpacing) -> Result<Self> {
         let poses = poses(slices)?;
         let plane = poses[0];
         let normal = plane.normal();
@@ -49,18 +52,24 @@ impl Stack {
                 (normal * thickness_mm, 0.0, vec![warning])
             }
             n => {
-                let spacing_mm = in_order.usual_spacing_mm()?;
-                let tolerance_mm = tolerance_mm(spacing_mm);
-                in_order.check_steps(spacing_mm, tolerance_mm)?;
+                let tolerance_mm = tolerance_mm(in_order.usual_spacing_mm()?);
                 ((in_order.position(n - 1) - in_order.position(0)) / (n - 1) as f64, tolerance_mm, Vec::new())
             }
         };
-        let deviation_mm = in_order.check_lattice(step_mm, normal, tolerance_mm)?;
+        let (places, deviation_mm) = match in_order.even(step_mm, normal, tolerance_mm) {
+            Ok(deviation_mm) => (None, deviation_mm),
+            Err(error) if spacing == SliceSpacing::Even => return Err(error),
+            Err(_) => {
+                let (places, deviation_mm) = in_order.uneven(step_mm, normal, tolerance_mm)?;
+                (Some(places), deviation_mm)
+            }
+        };
         let matrix =
             DMat3::from_cols(plane.row * plane.column_spacing_mm, plane.column * plane.row_spacing_mm, step_mm);
         let last = order.len() - 1;
         Ok(Stack {
             index_to_lps_mm: DAffine3::from_mat3_translation(matrix, in_order.position(0)),
+            slices: places,
             spacing_mm: step_mm.dot(normal),
             range_mm: [along[order[0]], along[order[last]]],
             deviation_mm,
@@ -69,6 +78,26 @@ impl Stack {
             warnings,
             order,
         })
+    }
+}
+
+impl Ordered<'_> {
+    /// Holds the slices to one step, and gives the largest distance of one from its place.
+    fn even(&self, step_mm: DVec3, normal: DVec3, tolerance_mm: f64) -> Result<f64> {
+        if self.order.len() > 1 {
+            let spacing_mm = self.usual_spacing_mm()?;
+            self.check_steps(spacing_mm, tolerance_mm)?;
+        }
+        self.check_lattice(step_mm, None, normal, tolerance_mm)
+    }
+
+    /// The places of slices whose step may change, and the largest distance of one from it.
+    fn uneven(&self, step_mm: DVec3, normal: DVec3, tolerance_mm: f64) -> Result<(Slices, f64)> {
+        self.check_uneven_steps()?;
+        let along: Vec<f64> = self.order.iter().map(|&slice| self.along[slice]).collect();
+        let places = Slices::new(&along)?;
+        let deviation_mm = self.check_lattice(step_mm, Some(&places), normal, tolerance_mm)?;
+        Ok((places, deviation_mm))
     }
 }
 

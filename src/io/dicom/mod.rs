@@ -28,7 +28,11 @@
 //! which the standard reserves for people, is not read. Steps may differ from the median one by 1 % or 0.01 mm, whichever is
 //! larger (but at most 10 % of it), and no slice may be farther than that from its place on the lattice; the largest
 //! deviation is among the facts of the scan. Missing slices, several slices at one position, uneven steps and shifted slices
-//! are errors of [`Fault::Geometry`](crate::Fault::Geometry) that name files and millimetres. Slice Thickness is a property of
+//! are errors of [`Fault::Geometry`](crate::Fault::Geometry) that name files and millimetres. Where changing steps are asked
+//! for ([`SliceSpacing::Uneven`]), a series that is not even is read as a rectilinear volume
+//! ([`Slices`](crate::volume::Slices)): each slice at its place, which may lie off the line from the first to the last by the
+//! same tolerance. A gap is then a step that is a whole multiple of the larger of those beside it: 5 5 10 5 5 mm misses a
+//! slice, 5 5 10 10 10 mm does not. Slice Thickness is a property of
 //! the beam, not of the lattice; only the extent of a single slice is taken from it, with a warning.
 //!
 //! # From pixels to values
@@ -77,8 +81,9 @@ mod write;
 
 pub use choice::SeriesChoice;
 pub use folder::{Folder, scan_folder};
-pub use read::read;
+pub use read::{read, read_spaced};
 pub use series::{Series, Verdict};
+pub use spacing::SliceSpacing;
 pub use write::{SeriesDescription, write_series};
 
 /// The innermost cause of a library's error, which is the part that says something about the file.

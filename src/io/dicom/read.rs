@@ -8,9 +8,10 @@ use super::choice::SeriesChoice;
 use super::folder::{Folder, scan_folder};
 use super::geometry::Stack;
 use super::series::{Series, Slice};
+use super::spacing::SliceSpacing;
 use crate::error::Result;
 use crate::io::{FileFate, Scan};
-use crate::volume::{Grid, Quantity, Volume};
+use crate::volume::{Grid, Quantity, Slices, Volume};
 
 /// Reads one series of a folder, or of a single file, as a volume.
 ///
@@ -20,9 +21,17 @@ use crate::volume::{Grid, Quantity, Volume};
 /// `Fault::Input` if there is no such series or its files are damaged, `Fault::Unsupported` for pixels that this build does
 /// not decode, `Fault::Geometry` for slices that make no lattice, `Fault::Limit` for more than `max_bytes`.
 pub fn read(path: &Path, choice: &SeriesChoice, max_bytes: Option<u64>) -> Result<Scan> {
+    read_spaced(path, choice, SliceSpacing::Even, max_bytes)
+}
+
+/// The same for slices whose spacing may change.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_spaced(path: &Path, choice: &SeriesChoice, spacing: SliceSpacing, max_bytes: Option<u64>) -> Result<Scan> {
     let folder = scan_folder(path)?;
     let series = choice.pick(&folder)?;
-    let stack = series.stack()?;
+    let stack = series.stack(spacing)?;
     let slices: Vec<Slice> = stack.order.iter().map(|&index| series.slices[index].clone()).collect();
     let grid = Grid::new(series.dims, stack.index_to_lps_mm).map_err(|error| error.at(path))?;
     let assembled = assemble(series, &slices, max_bytes)?;
@@ -35,7 +44,9 @@ pub fn read(path: &Path, choice: &SeriesChoice, max_bytes: Option<u64>) -> Resul
         .chain(folder_warnings(&folder, series))
         .collect();
     let reading_bytes = assembled.reading_bytes;
-    let volume = Volume::new(grid, assembled.samples, assembled.rescale, quantity).map_err(|error| error.at(path))?;
+    let volume = Volume::new(grid, assembled.samples, assembled.rescale, quantity)
+        .and_then(|volume| stack.slices.iter().cloned().try_fold(volume, Volume::with_slices))
+        .map_err(|error| error.at(path))?;
     let facts = facts(series, &stack, assembled.rescale_text);
     Ok(Scan { facts, warnings, files: fates(&folder, series), volume, reading_bytes })
 }
@@ -94,7 +105,7 @@ fn facts(series: &Series, stack: &Stack, rescale: String) -> Vec<(String, String
         ("modality", series.modality.clone()),
         ("transfer syntax", series.transfer_syntax.clone()),
         ("dimensions", format!("{columns} x {rows} x {count}")),
-        ("slice spacing", format!("{:.4} mm along the normal", stack.spacing_mm)),
+        ("slice spacing", slice_spacing(stack)),
         ("slice positions", format!("{low:.3} to {high:.3} mm along the normal")),
         ("uneven spacing", format!("up to {:.6} mm of {:.4} mm accepted", stack.deviation_mm, stack.tolerance_mm)),
         ("rescale", rescale),
@@ -103,6 +114,16 @@ fn facts(series: &Series, stack: &Stack, rescale: String) -> Vec<(String, String
         facts.push(("gantry tilt", format!("{:.3} degrees, kept as shear", stack.tilt_degrees)));
     }
     facts.into_iter().map(|(label, text)| (label.to_owned(), text)).collect()
+}
+
+fn slice_spacing(stack: &Stack) -> String {
+    match stack.slices.as_ref().map(Slices::step_range) {
+        None => format!("{:.4} mm along the normal", stack.spacing_mm),
+        Some(steps) => {
+            let [least, most] = steps.map(|step| step * stack.spacing_mm);
+            format!("{least:.4} to {most:.4} mm along the normal, uneven")
+        }
+    }
 }
 
 /// The fate of every file of the folder, by path.

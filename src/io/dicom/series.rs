@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::geometry::Stack;
 use super::group::Group;
 use super::header::{FrameHeader, ImageFile};
+use super::spacing::SliceSpacing;
 use super::transfer_syntax;
 use crate::error::{Error, Fault, Result};
 
@@ -96,7 +97,7 @@ impl Series {
         syntaxes.dedup();
         let decodable = syntaxes.iter().all(|uid| transfer_syntax::can_decode(uid));
         let transfer_syntax = syntaxes.iter().map(|uid| transfer_syntax::name(uid)).collect::<Vec<_>>().join(", ");
-        let stack = judge(&slices);
+        let stack = judge(&slices, SliceSpacing::Even);
         let spacing = |stack: &Stack| {
             let m = stack.index_to_lps_mm.matrix3;
             [m.x_axis.length(), m.y_axis.length(), m.z_axis.length()]
@@ -126,14 +127,15 @@ impl Series {
     ///
     /// # Errors
     /// What the verdict says, in full.
-    pub(super) fn stack(&self) -> Result<Stack> {
-        judge(&self.slices)
+    pub(super) fn stack(&self, spacing: SliceSpacing) -> Result<Stack> {
+        judge(&self.slices, spacing)
     }
 
     /// The files and their positions in mm along the normal (`None` where not known), in the order of the volume where
     /// there is one, else by path.
     pub fn files(&self) -> Vec<(&Path, Option<f64>)> {
-        let order = self.stack().map_or_else(|_| (0..self.slices.len()).collect(), |stack| stack.order);
+        let order =
+            self.stack(SliceSpacing::Even).map_or_else(|_| (0..self.slices.len()).collect(), |stack| stack.order);
         order.iter().map(|&s| (self.slices[s].path(), along(&self.slices[s]))).collect()
     }
 
@@ -172,7 +174,7 @@ fn is_localizer(file: &ImageFile) -> bool {
 }
 
 /// All that headers can tell about whether slices make a volume.
-fn judge(slices: &[Slice]) -> Result<Stack> {
+fn judge(slices: &[Slice], spacing: SliceSpacing) -> Result<Stack> {
     let unsupported = |slice: &Slice, what: String| Error::new(Fault::Unsupported, what).at(slice.path());
     if is_localizer(slices[0].file()) {
         return Err(Error::new(Fault::Geometry, "a localizer: an overview image, not slices of a volume")
@@ -201,5 +203,5 @@ fn judge(slices: &[Slice]) -> Result<Stack> {
                 .remedy("export the series again"));
         }
     }
-    Stack::of(slices)
+    Stack::of(slices, spacing)
 }

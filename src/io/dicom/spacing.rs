@@ -1,10 +1,12 @@
-//! Whether slices in order are evenly spaced: gaps, duplicates, uneven and shifted slices, each named with its place.
+//! Whether slices in order are evenly spaced, or at least complete: gaps, duplicates, uneven and shifted slices, each named
+//! with its place.
 
 use glam::DVec3;
 
 use super::header::Pose;
 use super::series::Slice;
 use crate::error::{Error, Fault, Result};
+use crate::volume::Slices;
 
 /// Slices are evenly spaced if each step is within this part of the spacing …
 const RELATIVE_TOLERANCE: f64 = 0.01;
@@ -16,8 +18,21 @@ const TOLERANCE_CAP: f64 = 0.1;
 const SAME_POSITION: f64 = 0.05;
 /// Slices closer than this are at one position, whatever the spacing.
 const SAME_POSITION_MM: f64 = 1e-4;
+/// What can be done with slices that were planned at changing distances.
+const AS_THEY_ARE: &str = "read the slices where they lie with `volume: { slices: uneven }`";
 /// Gaps, duplicates and so on that a message names one by one.
 const NAMED_PLACES: usize = 4;
+
+/// Whether the distance from slice to slice may change.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum SliceSpacing {
+    /// It must not: a series whose distance changes is refused.
+    #[default]
+    Even,
+    /// It may, and then the volume is rectilinear; a series whose distance does not change is as ever. A step that is a
+    /// multiple of those on both its sides is still a gap.
+    Uneven,
+}
 
 /// How far from its place a slice may be, for slices this far apart.
 pub(super) fn tolerance_mm(spacing_mm: f64) -> f64 {
@@ -81,10 +96,9 @@ impl Ordered<'_> {
         } else if gaps.len() == bad.len() {
             let lost: f64 = gaps.iter().map(|&k| missing(k)).sum();
             Err(self
-                .error(format!("slices are missing: {lost} in {} gaps", gaps.len()))
-                .element(self.between(&gaps))
+                .missing(lost, &gaps)
                 .expected(format!("a slice every {spacing_mm:.4} mm"))
-                .remedy("copy or export the missing slices"))
+                .remedy(format!("copy or export the missing slices; if none were left out, {AS_THEY_ARE}")))
         } else {
             let worst = bad.iter().map(|&k| (self.step(k) - spacing_mm).abs()).fold(0.0, f64::max);
             Err(self
@@ -92,15 +106,56 @@ impl Ordered<'_> {
                 .element(self.between(&bad))
                 .found(format!("{} steps that differ from the usual one by up to {worst:.4} mm", bad.len()))
                 .expected(format!("steps of {spacing_mm:.4} mm within {tolerance_mm:.4} mm"))
-                .remedy("resample the series to an even spacing, or keep only the slices of one spacing"))
+                .remedy(format!("{AS_THEY_ARE}, or keep only the slices of one spacing")))
         }
     }
 
+    /// Refuses gaps and duplicates among steps that may change: each step is judged by those beside it.
+    pub(super) fn check_uneven_steps(&self) -> Result<()> {
+        let count = self.order.len() - 1;
+        let beside = |k: usize| [k.checked_sub(1), (k + 1 < count).then_some(k + 1)].into_iter().flatten();
+        let least = |k: usize| beside(k).map(|n| self.step(n)).fold(f64::INFINITY, f64::min);
+        let most = |k: usize| beside(k).map(|n| self.step(n)).fold(0.0, f64::max);
+        let twice = |&k: &usize| {
+            let same = if least(k).is_finite() { SAME_POSITION * least(k) } else { 0.0 };
+            self.step(k) < same.max(SAME_POSITION_MM)
+        };
+        let twice: Vec<usize> = (0..count).filter(twice).collect();
+        if !twice.is_empty() {
+            return Err(self.duplicates(&twice));
+        }
+        let multiple = |k: usize| if most(k) > 0.0 { (self.step(k) / most(k)).round() } else { 1.0 };
+        let is_gap = |&k: &usize| {
+            multiple(k) >= 2.0 && (self.step(k) - multiple(k) * most(k)).abs() <= tolerance_mm(self.step(k))
+        };
+        let gaps: Vec<usize> = (0..count).filter(is_gap).collect();
+        if gaps.is_empty() {
+            return Ok(());
+        }
+        let lost = gaps.iter().map(|&k| multiple(k) - 1.0).sum();
+        Err(self
+            .missing(lost, &gaps)
+            .expected("steps that are no multiple of those on both their sides")
+            .remedy("copy or export the missing slices"))
+    }
+
+    fn missing(&self, lost: f64, gaps: &[usize]) -> Error {
+        self.error(format!("slices are missing: {lost} in {} gaps", gaps.len())).element(self.between(gaps))
+    }
+
     /// Largest distance of a slice from the lattice.
-    pub(super) fn check_lattice(&self, step_mm: DVec3, normal: DVec3, tolerance_mm: f64) -> Result<f64> {
+    pub(super) fn check_lattice(
+        &self,
+        step_mm: DVec3,
+        slices: Option<&Slices>,
+        normal: DVec3,
+        tolerance_mm: f64,
+    ) -> Result<f64> {
+        let place = |k: usize| slices.map_or(k as f64, |slices| slices.positions()[k]);
+        let off = |k: usize| self.position(k) - (self.position(0) + step_mm * place(k));
         let mut worst = (0.0, 0);
         for k in 0..self.order.len() {
-            let off = self.position(k) - (self.position(0) + step_mm * k as f64);
+            let off = off(k);
             if off.length() > worst.0 {
                 worst = (off.length(), k);
             }
@@ -109,7 +164,7 @@ impl Ordered<'_> {
         if deviation_mm <= tolerance_mm || self.order.len() == 1 {
             return Ok(deviation_mm);
         }
-        let off = self.position(k) - (self.position(0) + step_mm * k as f64);
+        let off = off(k);
         let in_plane = (off - normal * off.dot(normal)).length();
         Err(self
             .error("the slices do not lie on one lattice")

@@ -4,13 +4,11 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
-
 use super::ct_image::SeriesAttributes;
 use super::decimal_string::exact;
 use super::uid::Seed;
 use crate::error::{Error, Fault, Result};
-use crate::volume::{Quantity, Rescale, Samples, Volume};
+use crate::volume::{Quantity, Rescale, Samples, Slices, Volume};
 
 /// Cosine of the angle between rows and columns above which a lattice is sheared in the plane of its slices.
 const IN_PLANE_SHEAR: f64 = 1e-6;
@@ -30,7 +28,8 @@ pub struct SeriesDescription {
 /// Writes a volume as a CT Image Storage series into a new folder, one file per slice, and gives the number of files.
 ///
 /// Values are written as signed 16-bit numbers with the volume's rescale, so that reading gives the same values; the
-/// affine as position, orientation and spacing, to the 16 characters of a DS. Slices of a left-handed lattice come back in
+/// affine as position, orientation and spacing, to the 16 characters of a DS; slices at uneven distances each at its
+/// place, without Spacing Between Slices. Slices of a left-handed lattice come back in
 /// the reverse order, each at its place. The folder appears whole or not at all. Patient name and ID are `PHANTOM`; the
 /// identifiers are those of the content, the same each time.
 ///
@@ -45,7 +44,7 @@ pub fn write_series(dir: &Path, volume: &Volume, description: &SeriesDescription
     let width = slices.to_string().len().max(4);
     whole_folder(dir, |folder| {
         for k in 0..slices {
-            let position = volume.grid().index_to_lps_mm().transform_point3(DVec3::new(0.0, 0.0, k as f64));
+            let position = volume.voxel_mm([0, 0, k]);
             let plane = &stored[k * columns * rows..(k + 1) * columns * rows];
             let pixels = plane.iter().map(|&value| value.cast_unsigned()).collect();
             let path = folder.join(format!("{:0width$}.dcm", k + 1));
@@ -132,7 +131,7 @@ fn attributes(
         columns: u16::try_from(columns).map_err(too_many)?,
         cosines: [row.x, row.y, row.z, column.x, column.y, column.z],
         pixel_spacing_mm: [matrix.y_axis.length(), matrix.x_axis.length()],
-        slice_spacing_mm: matrix.z_axis.dot(row.cross(column)).abs(),
+        slice_spacing_mm: volume.slices().is_none().then(|| matrix.z_axis.dot(row.cross(column)).abs()),
         rescale: [decimal("slope", rescale.slope)?, decimal("intercept", rescale.intercept)?],
         rescale_type: quantity,
     })
@@ -148,11 +147,13 @@ fn content_seed(
     seed: u64,
 ) -> Seed {
     let dims = volume.grid().dims().map(|n| n as u64).map(u64::to_le_bytes).concat();
-    let affine = volume.grid().index_to_lps_mm().to_cols_array().map(f64::to_le_bytes).concat();
+    let affine = volume.grid().index_to_lps_mm().to_cols_array();
+    let places = volume.slices().map(Slices::positions).unwrap_or_default();
+    let lattice: Vec<u8> = affine.iter().chain(places).flat_map(|number| number.to_le_bytes()).collect();
     let rescale = [rescale.slope, rescale.intercept].map(f64::to_le_bytes).concat();
     let samples: Vec<u8> = stored.iter().flat_map(|value| value.to_le_bytes()).collect();
     let description = description.description.as_bytes();
-    Seed::of(&[&dims, &affine, &rescale, quantity.as_bytes(), description, &seed.to_le_bytes(), &samples])
+    Seed::of(&[&dims, &lattice, &rescale, quantity.as_bytes(), description, &seed.to_le_bytes(), &samples])
 }
 
 /// Makes a folder under another name beside `dir`, lets `write` fill it, and gives it its name; nothing is left on failure.

@@ -23,8 +23,10 @@ const CHUNK_VALUES: usize = 1 << 14;
 /// their components along the first axis.
 ///
 /// # Errors
-/// `Fault::Output` if the file cannot be written, or a key or value cannot stand in a header.
+/// `Fault::Unsupported` for slices at uneven distances, which a NRRD cannot say. `Fault::Output` if the file cannot be
+/// written, or a key or value cannot stand in a header.
 pub fn write(path: &Path, volume: &Volume, encoding: Encoding, key_values: &[(String, String)]) -> Result<()> {
+    refuse_uneven(volume).map_err(|error| error.at(path))?;
     let element_type = element_type(volume);
     let header = header(volume, element_type, encoding, key_values).map_err(|error| error.at(path))?;
     whole_file::write(path, |file| {
@@ -45,6 +47,18 @@ pub fn write(path: &Path, volume: &Volume, encoding: Encoding, key_values: &[(St
             Encoding::Hex => binary(volume, element_type, &mut HexDigits(file)),
         }
     })
+}
+
+/// The format has one `space directions` vector per axis, and no place for a table.
+fn refuse_uneven(volume: &Volume) -> Result<()> {
+    if volume.slices().is_none() {
+        return Ok(());
+    }
+    let [least, most] = volume.slice_step_range_mm();
+    Err(Error::new(Fault::Unsupported, "a NRRD cannot hold slices at uneven distances")
+        .found(format!("slices {least:.4} to {most:.4} mm apart"))
+        .expected("one distance")
+        .remedy("write a DICOM series, or resample to even slices first"))
 }
 
 /// The smallest type that holds every value exactly.

@@ -10,15 +10,21 @@ const VOXELS: std::ops::RangeInclusive<u32> = 1..=4096;
 pub(super) fn check_analytic(check: Check<'_>, path: &str, analytic: &AnalyticSpec) -> Result<()> {
     let at = |key| join(path, key);
     check_field(check, &at("field"), &analytic.field)?;
-    let sizes = analytic.size.along::<3>().is_some_and(|size| size.iter().all(|n| VOXELS.contains(n)));
-    check.require(&at("size"), sizes, "1 to 4096 voxels: one number, or [x, y, z]")?;
+    let axes = if analytic.planes_mm.is_some() { 2 } else { 3 };
+    let each = if axes == 2 { "[x, y]" } else { "[x, y, z]" };
+    let is_size = |n: &u32| VOXELS.contains(n);
+    let size = analytic.size.numbers(axes).is_some_and(|size| size.iter().all(is_size));
+    check.require(&at("size"), size, &format!("1 to 4096 voxels: one number, or {each}"))?;
     let lengths = [("spacing_mm", &analytic.spacing_mm), ("extent_mm", &analytic.extent_mm)];
     check.exactly_one(path, &lengths.map(|(key, length)| (key, length.is_some())))?;
     for (key, length) in lengths {
-        let usable = |length: &PerAxis<f64>| length.along::<3>().is_some_and(|mm| mm.iter().all(|mm| *mm > 0.0));
-        check.require(&at(key), length.as_ref().is_none_or(usable), "mm above 0: one number, or [x, y, z]")?;
+        let usable = |length: &PerAxis<f64>| length.numbers(axes).is_some_and(|mm| mm.iter().all(|mm| *mm > 0.0));
+        let expected = format!("mm above 0: one number, or {each}");
+        check.require(&at(key), length.as_ref().is_none_or(usable), &expected)?;
     }
-    Ok(())
+    let Some(planes_mm) = &analytic.planes_mm else { return Ok(()) };
+    let usable = (2..=4096).contains(&planes_mm.len()) && planes_mm.is_sorted_by(|a, b| a < b);
+    check.require(&at("planes_mm"), usable, "2 to 4096 positions in mm, each above the one before")
 }
 
 fn check_field(check: Check<'_>, path: &str, field: &FieldSpec) -> Result<()> {

@@ -78,6 +78,10 @@ fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
     check.unread("volume.series", has_series && volume.analytic.is_some(), "a formula has no series")?;
     let is_file = volume.source.as_deref().is_some_and(is_nrrd);
     check.unread("volume.series", has_series && is_file, "a NRRD file has no series")?;
+    let is_made = volume.phantom.is_some() || volume.analytic.is_some();
+    let has_slices = volume.slices.is_some();
+    check.unread("volume.slices", has_slices && is_made, "only DICOM slices may lie where they were not asked to")?;
+    check.unread("volume.slices", has_slices && is_file, "the slices of a NRRD file are even")?;
     let contradiction = volume.values == Some(ValuesName::Arbitrary) && volume.shift_hu.is_some();
     check.unread("volume.shift_hu", contradiction, "the values are said to be arbitrary, not HU")
 }

@@ -3,7 +3,6 @@
 use crate::integrate::light_volumes::LightVolumes;
 use crate::scene::{Ray, Scene};
 
-use super::super::cells::IndexRay;
 use super::super::medium::Medium;
 use super::super::ray::{Frame, Traced};
 use super::super::splits::Splits;
@@ -23,8 +22,8 @@ impl<M: Medium<f64>> Tracer for Kernel<'_, M> {
     fn trace(&self, ray: &Ray) -> Option<Traced> {
         let of_function: Brightest = self.frame.brightest;
         let atmosphere = Atmosphere::new(self.scene, ray, &self.lights, of_function.color);
-        let (near_mm, length_mm) = IndexRay::new(ray, self.frame.grid, self.frame.clip)
-            .map_or((0.0, 0.0), |inside| (inside.enter_mm(), inside.length_mm()));
+        let (near_mm, length_mm) =
+            self.frame.domain.inside(ray).map_or((0.0, 0.0), |inside| (inside.enter_mm(), inside.length_mm()));
         let (brightest, stored_error) = atmosphere.bounds(self.scene, of_function, near_mm, length_mm);
         // What stored transmittances cost no shorter piece can win back.
         let tolerance = (self.frame.tolerance - stored_error).max(0.5 * self.frame.tolerance);
