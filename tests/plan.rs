@@ -11,6 +11,7 @@ mod camera;
 mod clip;
 mod demand;
 mod explain;
+mod mask;
 mod method;
 mod shapes;
 mod transfer_function;
@@ -30,6 +31,7 @@ fn volume() -> VolumeInfo {
         storage: Storage::I16,
         value_range: [-1000.0, 1800.0],
         quantity: Quantity::Hu,
+        labels: None,
     }
 }
 

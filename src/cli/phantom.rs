@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use pellucid::Result;
 use pellucid::io::dicom::{SeriesDescription, write_series};
-use pellucid::io::nrrd;
+use pellucid::io::{labels, nrrd};
 use pellucid::synthetic::{self, HeadPhantom};
 
 use super::stdout;
@@ -23,7 +23,7 @@ enum Kind {
 }
 
 #[derive(Debug, clap::Args)]
-#[command(group(clap::ArgGroup::new("target").required(true).multiple(true).args(["nrrd", "dicom"])))]
+#[command(group(clap::ArgGroup::new("target").required(true).multiple(true).args(["nrrd", "dicom", "labels"])))]
 struct Head {
     /// Write a NRRD file
     #[arg(long, value_name = "FILE")]
@@ -32,6 +32,10 @@ struct Head {
     /// Write a DICOM series into a new folder
     #[arg(long, value_name = "DIR")]
     dicom: Option<PathBuf>,
+
+    /// Write the label map: the number and name of the structure at each voxel, as a NRRD segmentation
+    #[arg(long, value_name = "FILE")]
+    labels: Option<PathBuf>,
 
     /// Voxels from ear to ear
     #[arg(long, value_name = "N", default_value_t = HeadPhantom::default().size)]
@@ -50,6 +54,14 @@ impl Phantom {
     /// Makes the scan and writes it; the paths written go to stdout.
     pub(super) fn run(&self) -> Result<()> {
         let Kind::Head(head) = &self.kind;
+        if let Some(path) = &head.labels {
+            let segments = labels::segments(synthetic::head_structures());
+            nrrd::write(path, &synthetic::head_labels(head.size)?, nrrd::Encoding::Gzip, &segments)?;
+            stdout::print(&path.display().to_string())?;
+        }
+        if head.nrrd.is_none() && head.dicom.is_none() {
+            return Ok(());
+        }
         let volume = synthetic::head(&HeadPhantom { size: head.size, seed: head.seed, noise_hu: head.noise_hu })?;
         if let Some(path) = &head.nrrd {
             nrrd::write(path, &volume, nrrd::Encoding::Gzip, &[])?;

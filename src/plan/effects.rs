@@ -1,11 +1,11 @@
 //! Effects, resolved: one that is named with a strength of 0 is not there.
 
-use crate::scene::Effects;
+use crate::scene::{Effects, Mask};
 use crate::spec::Spec;
 use crate::volume::Grid;
 
 use super::clip;
 
-pub(super) fn resolve(spec: &Spec, grid: &Grid) -> Effects {
-    Effects { clip: clip::resolve(spec, grid), ..Effects::default() }
+pub(super) fn resolve(spec: &Spec, grid: &Grid, mask: Option<Mask>) -> Effects {
+    Effects { clip: clip::resolve(spec, grid), mask, ..Effects::default() }
 }

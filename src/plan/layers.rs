@@ -40,29 +40,50 @@ pub(super) fn resolve(
     gradient_range_per_mm: f64,
     emission_scale: f64,
 ) -> Result<Vec<Layer>> {
-    let resolve = |(i, (layer, loaded)): (usize, (&LayerSpec, Option<&LoadedPreset>))| {
-        let key_path = format!("transfer_function.{i}");
-        let preset = loaded.map(|loaded| &loaded.preset);
-        if preset.is_some_and(|p| p.values != Some(ValuesName::Arbitrary)) {
-            refuse_hu_for_other_values(spec, volume, layer, &key_path)?;
-        }
-        let widgets = preset.map(|p| &p.widgets).or(layer.widgets.as_ref());
-        let mut max_deviation = 0.0f64;
-        let mut terms = Vec::new();
-        for (k, widget) in widgets.into_iter().flatten().enumerate() {
-            let file = loaded.map_or(spec.path(), |loaded| &loaded.path);
-            let prefix = if loaded.is_some() { String::new() } else { format!("{key_path}.") };
-            let named = |error: Error| error.at(file).element(format!("{prefix}widgets.{k}"));
-            let expansion = expand(widget, layer.color).map_err(named)?;
-            max_deviation = max_deviation.max(expansion.max_deviation);
-            for term in expansion.terms {
-                terms.extend(placed(term, layer, emission_scale).and_then(|t| simplified(t, gradient_range_per_mm))?);
-            }
-        }
-        let name = preset.map_or_else(|| format!("layer {}", i + 1), |p| p.name.clone());
-        Ok(Layer { name, tissue: preset.and_then(|p| p.tissue.clone()), terms, max_deviation })
+    let resolve = |(i, (written, loaded)): (usize, (&LayerSpec, Option<&LoadedPreset>))| {
+        let (key_path, name) = (format!("transfer_function.{i}"), format!("layer {}", i + 1));
+        let place = Place { key_path: &key_path, name: &name };
+        layer(spec, volume, written, loaded, place, gradient_range_per_mm, emission_scale)
     };
     spec.layers().enumerate().map(resolve).collect()
+}
+
+/// Where a layer is written, and what it is called unless it has a preset.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub(super) key_path: &'a str,
+    pub(super) name: &'a str,
+}
+
+/// One layer, with all emission times `emission_scale`.
+pub(super) fn layer(
+    spec: &Spec,
+    volume: &VolumeInfo,
+    layer: &LayerSpec,
+    loaded: Option<&LoadedPreset>,
+    place: Place<'_>,
+    gradient_range_per_mm: f64,
+    emission_scale: f64,
+) -> Result<Layer> {
+    let preset = loaded.map(|loaded| &loaded.preset);
+    if preset.is_some_and(|p| p.values != Some(ValuesName::Arbitrary)) {
+        refuse_hu_for_other_values(spec, volume, layer, place.key_path)?;
+    }
+    let widgets = preset.map(|p| &p.widgets).or(layer.widgets.as_ref());
+    let mut max_deviation = 0.0f64;
+    let mut terms = Vec::new();
+    for (k, widget) in widgets.into_iter().flatten().enumerate() {
+        let file = loaded.map_or(spec.path(), |loaded| &loaded.path);
+        let prefix = if loaded.is_some() { String::new() } else { format!("{}.", place.key_path) };
+        let named = |error: Error| error.at(file).element(format!("{prefix}widgets.{k}"));
+        let expansion = expand(widget, layer.color).map_err(named)?;
+        max_deviation = max_deviation.max(expansion.max_deviation);
+        for term in expansion.terms {
+            terms.extend(placed(term, layer, emission_scale).and_then(|t| simplified(t, gradient_range_per_mm))?);
+        }
+    }
+    let name = preset.map_or_else(|| place.name.to_owned(), |p| p.name.clone());
+    Ok(Layer { name, tissue: preset.and_then(|p| p.tissue.clone()), terms, max_deviation })
 }
 
 /// A preset in HU means nothing on values of unknown meaning, unless the layer says how the two relate.

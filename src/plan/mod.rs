@@ -11,6 +11,7 @@ mod explain;
 mod integrator;
 mod layers;
 mod light;
+mod mask;
 mod method;
 mod model;
 mod output;
@@ -20,10 +21,11 @@ mod warnings;
 
 pub use explain::{explain, explain_json};
 pub use layers::Layer;
+pub use mask::LabelClasses;
 pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
 pub use output::{Format, Output};
 pub use stages::{Omission, Stage};
-pub use volume_info::{Storage, VolumeInfo};
+pub use volume_info::{LabelInfo, Storage, VolumeInfo};
 
 use std::path::Path;
 
@@ -42,6 +44,8 @@ pub struct Plan {
     pub method: Method,
     /// The layers whose sum is the scene's transfer function, in the order written; for classification.
     pub layers: Vec<Layer>,
+    /// Which class of the scene's mask the voxels of each label have; `None` without a mask.
+    pub label_classes: Option<LabelClasses>,
     /// What the stages together read of the volume.
     pub demand: Demand,
     /// The file to write.
@@ -69,24 +73,27 @@ impl Plan {
         let light = light::resolve(spec);
         let layers = layers::resolve(spec, volume, gradient_range[1], light.emission_scale)?;
         let terms = layers.iter().flat_map(|layer| layer.terms.iter().cloned()).collect();
+        let mask = mask::resolve(spec, volume, (window, gradient_range[1]), light.emission_scale)?;
+        let (mask, label_classes) = mask.map(|m| (m.mask, m.classes)).unzip();
         let scene = Scene {
             model: model::resolve(spec),
             transfer_function: TransferFunction::new(window, gradient_range[1], terms)?,
             shading: light.shading,
             camera: camera::resolve(spec, &volume.grid)?,
             background: light.background,
-            effects: effects::resolve(spec, &volume.grid),
+            effects: effects::resolve(spec, &volume.grid, mask),
         };
         let method = integrator::resolve(spec, &volume.grid);
         let demand = Demand {
             gradient: scene.shading.is_some(),
-            gradient_magnitude: scene.transfer_function.reads_gradient(),
+            gradient_magnitude: scene.transfer_functions().any(TransferFunction::reads_gradient),
             macrocells: matches!(method, Method::March(_)),
         };
         let mut plan = Plan {
             scene,
             method,
             layers,
+            label_classes,
             demand,
             output,
             certify: spec.pipeline.certify.map(|pixels| pixels as usize),

@@ -1,9 +1,12 @@
 //! What a plan needs to know of a volume: all but its samples.
 
+use std::collections::BTreeMap;
+
+use crate::io::Labels;
 use crate::volume::{Grid, Quantity, Samples, Volume};
 
 /// What a plan needs to know of a volume: all but its samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct VolumeInfo {
     /// Lattice and affine.
     pub grid: Grid,
@@ -13,6 +16,17 @@ pub struct VolumeInfo {
     pub value_range: [f64; 2],
     /// What the values measure.
     pub quantity: Quantity,
+    /// Its labels, where a mask asks for them.
+    pub labels: Option<LabelInfo>,
+}
+
+/// What a plan needs to know of labels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LabelInfo {
+    /// How many voxels have each label that occurs.
+    pub counts: BTreeMap<u16, u64>,
+    /// Labels by their names, where they have names.
+    pub names: BTreeMap<String, u16>,
 }
 
 /// How samples are stored in memory.
@@ -58,6 +72,18 @@ impl From<&Volume> for VolumeInfo {
             Samples::I16(_) => Storage::I16,
             Samples::F32(_) => Storage::F32,
         };
-        VolumeInfo { grid: *volume.grid(), storage, value_range: volume.value_range(), quantity: volume.quantity() }
+        VolumeInfo {
+            grid: *volume.grid(),
+            storage,
+            value_range: volume.value_range(),
+            quantity: volume.quantity(),
+            labels: None,
+        }
+    }
+}
+
+impl From<&Labels> for LabelInfo {
+    fn from(labels: &Labels) -> Self {
+        LabelInfo { counts: labels.counts().clone(), names: labels.names().clone() }
     }
 }

@@ -1,11 +1,12 @@
 //! What a careful user should know of a plan before the first ray.
 
+use crate::scene::Model;
 use crate::spec::{Spec, ValuesName};
 use crate::transfer::{Optics, Side, TransferFunction};
 use crate::volume::Quantity;
 
-use super::clip;
 use super::{Exact, Method, Plan, VolumeInfo};
+use super::{clip, mask};
 
 pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -17,8 +18,12 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
              normalise.hu widens it"
         ));
     }
-    if shows_nothing(tf, volume.value_range) {
+    let is_dark = |tf| plan.scene.model == Model::Light && shows_nothing(tf, volume.value_range);
+    if shown(plan, volume).all(is_dark) {
         warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
+    }
+    for label in mask::without_voxels(spec, volume) {
+        warnings.push(format!("no voxel has the label {label} of effects.mask"));
     }
     if clip::leaves_nothing(&plan.scene.effects.clip, &volume.grid) {
         warnings
@@ -49,6 +54,18 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
         _ => {}
     }
     warnings
+}
+
+/// The transfer functions by which some voxel shows.
+fn shown<'a>(plan: &'a Plan, volume: &'a VolumeInfo) -> impl Iterator<Item = &'a TransferFunction> {
+    let scene = &plan.scene;
+    let masked = scene.effects.mask.as_ref().zip(plan.label_classes.as_ref()).zip(volume.labels.as_ref());
+    let plain = masked.is_none().then_some(&scene.transfer_function);
+    let by_label = masked.into_iter().flat_map(|((mask, classes), labels)| {
+        let functions = labels.counts.keys().map(|&label| usize::from(classes.class(label)));
+        functions.filter_map(|class| mask.function(class, &scene.transfer_function))
+    });
+    plain.into_iter().chain(by_label)
 }
 
 /// True if the transfer function is 0 at all values of the volume, at any gradient magnitude.

@@ -35,7 +35,13 @@ pub fn read(path: &Path, choice: &SeriesChoice, max_bytes: Option<u64>) -> Resul
         .chain(folder_warnings(&folder, series))
         .collect();
     let volume = Volume::new(grid, assembled.samples, assembled.rescale, quantity).map_err(|error| error.at(path))?;
-    Ok(Scan { facts: facts(series, &stack, assembled.rescale_text), warnings, files: fates(&folder, series), volume })
+    Ok(Scan {
+        labels: None,
+        facts: facts(series, &stack, assembled.rescale_text),
+        warnings,
+        files: fates(&folder, series),
+        volume,
+    })
 }
 
 /// What the values measure: Rescale Type is HU unless it says otherwise (PS3.3 §C.8.2.1 and §C.11.1.1.2).

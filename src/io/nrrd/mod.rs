@@ -87,7 +87,7 @@ pub fn read(path: &Path) -> Result<Scan> {
     warnings.append(&mut assumptions);
     let (samples, rescale) = storage::samples(elements, &mut warnings).map_err(|error| error.at(path))?;
     let volume = Volume::new(grid, samples, rescale, quantity(header.element_type)).map_err(|error| error.at(path))?;
-    Ok(Scan { facts: facts(&header, &volume, files.len()), volume, warnings, files })
+    Ok(Scan { labels: None, facts: facts(&header, &volume, files.len()), volume, warnings, files })
 }
 
 fn quantity(element_type: ElementType) -> Quantity {

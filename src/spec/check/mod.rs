@@ -3,6 +3,7 @@
 mod camera;
 mod clip;
 mod effects;
+mod mask;
 mod pipeline;
 mod widget;
 

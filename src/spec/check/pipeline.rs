@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::camera::check_camera;
 use super::effects::{check_effects, check_what_shows};
+use super::mask::check_mask;
 use super::widget::check_widgets;
 use super::{Check, join};
 use crate::error::Result;
@@ -31,6 +32,9 @@ pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> R
     }
     if let Some(effects) = &pipeline.effects {
         check_effects(check, effects)?;
+        if let Some(mask) = &effects.mask {
+            check_mask(check, pipeline, mask)?;
+        }
     }
     if let Some(camera) = &pipeline.camera {
         check_camera(check, camera)?;
@@ -64,7 +68,7 @@ fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
     check.unread("volume.shift_hu", contradiction, "the values are said to be arbitrary, not HU")
 }
 
-fn check_layer(check: Check<'_>, path: &str, layer: &LayerSpec) -> Result<()> {
+pub(super) fn check_layer(check: Check<'_>, path: &str, layer: &LayerSpec) -> Result<()> {
     check.exactly_one(path, &[("preset", layer.preset.is_some()), ("widgets", layer.widgets.is_some())])?;
     check.at_least(&join(path, "opacity_scale"), layer.opacity_scale, 0.0)?;
     check.above_zero(&join(path, "scale"), layer.scale)?;
