@@ -84,7 +84,7 @@ pub(super) fn resolve(
     let description = describe(written, own, others);
     let resolved = LabelClasses { listed, others, description };
     let has_effect = labels.counts.keys().any(|&label| resolved.class(label) != SHOWN);
-    Ok(has_effect.then(|| ResolvedMask { mask: Mask { classes }, classes: resolved }))
+    Ok(has_effect.then_some(ResolvedMask { mask: Mask { classes }, classes: resolved }))
 }
 
 /// The number of a label that is written by number or by name.
