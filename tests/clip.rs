@@ -78,7 +78,7 @@ fn a_camera_behind_the_plane_sees_what_is_ahead_of_it() {
     let inside = Ray { origin_mm: DVec3::new(5.0, 5.0, 10.0), direction: DVec3::Z };
     for (offset_mm, length_mm) in [(4.0, 10.0), (15.0, 5.0)] {
         let scene = clipped(base.clone(), vec![half_space([0.0, 0.0, 1.0], offset_mm)]);
-        let expected = -(-0.1 * length_mm as f64).exp_m1();
+        let expected = -(-0.1_f64 * length_mm).exp_m1();
         for found in alphas(&volume, &scene, &inside) {
             assert!((found - expected).abs() < 3e-7, "plane at {offset_mm}: {found}, expected {expected}");
         }

@@ -66,7 +66,7 @@ fn seen(volume: &Volume, scene: &Scene, ray: &Ray) -> [[f64; 4]; 2] {
 fn half_a_slab_hidden_absorbs_as_the_half_that_is_left() {
     // Voxels 0 to 20: those up to 7 are hidden, so what is shown begins at 7.5.
     let volume = classified(volume_of(unit_grid([21; 3]), |_| 100.0), |[_, _, k]| u8::from(k <= 7));
-    let sigma = 0.05;
+    let sigma = 0.05_f64;
     let scene = masked(scene(even(sigma)), vec![Class::Shown, Class::Hidden]);
     for (origin_mm, direction, length_mm) in [
         (DVec3::new(5.0, 6.25, -9.0), DVec3::Z, 12.5),
@@ -77,7 +77,7 @@ fn half_a_slab_hidden_absorbs_as_the_half_that_is_left() {
         (DVec3::new(-4.0, 3.3, 7.5), DVec3::X, 20.0),
         (DVec3::new(1.0, 3.3, -9.0), DVec3::new(0.28, 0.0, 0.96), 12.5 / 0.96),
     ] {
-        let expected = -(-sigma * length_mm as f64).exp_m1();
+        let expected = -(-sigma * length_mm).exp_m1();
         for found in seen(&volume, &scene, &Ray { origin_mm, direction }) {
             assert!((found[3] - expected).abs() < 1e-12, "{origin_mm} {direction}: {}, expected {expected}", found[3]);
         }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use pellucid::synthetic::{HeadPhantom, head};
+use pellucid::synthetic::{HeadPhantom, head, head_labels, head_structures};
 use pellucid::volume::{Quantity, Samples};
 use pellucid::{Fault, Volume};
 use sha2::{Digest, Sha256};
@@ -221,4 +221,32 @@ fn sizes_and_noise_out_of_range_are_refused_by_name() {
         assert_eq!(error.fault(), Fault::Spec, "noise {noise_hu}: {error}");
         assert!(error.to_string().contains("noise_hu"), "found: {error}");
     }
+}
+
+#[test]
+fn the_label_map_names_the_structure_at_each_point() {
+    let labels = head_labels(128).expect("it can be made");
+    let structures: Vec<_> = head_structures().collect();
+    let points = [
+        ("", [0.0, -128.0, 0.0]),
+        ("skin", [0.0, 58.0, -90.0]),
+        ("muscle", [56.0, -32.0, -36.0]),
+        ("brain", [24.0, 10.0, 72.0]),
+        ("brain", [20.0, 36.0, 45.0]),
+        ("eyes", [-31.5, -68.0, 15.0]),
+        ("skull", [0.0, -85.0, 70.0]),
+        ("jaw", [0.0, -86.0, -78.0]),
+        ("spine", [0.0, 18.0, -80.0]),
+        ("airways", [5.0, -18.0, -48.0]),
+        ("teeth", [28.3, -60.9, -43.0]),
+        ("vessels", [26.0, -6.0, -36.0]),
+    ];
+    for (name, point) in points {
+        let label = hu_at(&labels, point) as u16;
+        let found = structures.iter().find(|(number, _)| *number == label).map_or("", |(_, name)| name);
+        assert_eq!(found, name, "at {point:?}, label {label}");
+    }
+    assert_eq!(labels.grid(), head(&HeadPhantom { size: 128, ..HeadPhantom::default() }).expect("made").grid());
+    let [low, high] = labels.value_range();
+    assert_eq!((low, high), (0.0, structures.len() as f64), "all structures occur");
 }

@@ -11,6 +11,7 @@ mod camera;
 mod clip;
 mod demand;
 mod explain;
+mod mask;
 mod method;
 mod shapes;
 mod show;
@@ -33,6 +34,7 @@ fn volume() -> VolumeInfo {
         value_range: [-1000.0, 1800.0],
         quantity: Quantity::Hu,
         reading_bytes: 2 * 64 * 48 * 33,
+        labels: None,
     }
 }
 

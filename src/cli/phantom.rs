@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use pellucid::Result;
 use pellucid::io::dicom::{SeriesDescription, write_series};
-use pellucid::io::nrrd;
+use pellucid::io::{labels, nrrd};
 use pellucid::pipeline::{self, Options};
 use pellucid::spec::{Spec, VolumeSource};
 use pellucid::synthetic::{self, HeadPhantom};
@@ -40,7 +40,7 @@ struct Rings {
 }
 
 #[derive(Debug, clap::Args)]
-#[command(group(clap::ArgGroup::new("target").required(true).multiple(true).args(["nrrd", "dicom"])))]
+#[command(group(clap::ArgGroup::new("target").required(true).multiple(true).args(["nrrd", "dicom", "labels"])))]
 struct Head {
     /// Write a NRRD file
     #[arg(long, value_name = "FILE")]
@@ -49,6 +49,10 @@ struct Head {
     /// Write a DICOM series into a new folder
     #[arg(long, value_name = "DIR")]
     dicom: Option<PathBuf>,
+
+    /// Write the label map: the number and name of the structure at each voxel, as a NRRD segmentation
+    #[arg(long, value_name = "FILE")]
+    labels: Option<PathBuf>,
 
     /// Voxels from ear to ear
     #[arg(long, value_name = "N", default_value_t = HeadPhantom::default().size)]
@@ -93,6 +97,14 @@ impl Phantom {
 
 impl Head {
     fn run(&self) -> Result<()> {
+        if let Some(path) = &self.labels {
+            let segments = labels::segments(synthetic::head_structures());
+            nrrd::write(path, &synthetic::head_labels(self.size)?, nrrd::Encoding::Gzip, &segments)?;
+            stdout::print(&path.display().to_string())?;
+        }
+        if self.nrrd.is_none() && self.dicom.is_none() {
+            return Ok(());
+        }
         let volume = synthetic::head(&HeadPhantom { size: self.size, seed: self.seed, noise_hu: self.noise_hu })?;
         if let Some(path) = &self.nrrd {
             nrrd::write(path, &volume, nrrd::Encoding::Gzip, &[])?;

@@ -4,11 +4,13 @@
 
 pub mod dicom;
 pub mod exr;
+pub mod labels;
 mod load;
 pub mod nrrd;
 pub mod png;
 pub mod whole_file;
 
+pub use labels::Labels;
 pub use load::{Format, format_of, load, load_spaced};
 
 use std::path::{Path, PathBuf};
@@ -22,6 +24,8 @@ use crate::volume::Volume;
 pub struct Scan {
     /// The volume.
     pub volume: Volume,
+    /// Labels of its voxels, where a mask asks for them.
+    pub labels: Option<Labels>,
     /// What was read, for people: format, series, dimensions; label and text.
     pub facts: Vec<(String, String)>,
     /// What a careful user should know: values replaced, orientation assumed.

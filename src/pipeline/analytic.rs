@@ -19,7 +19,7 @@ pub(super) fn load(spec: &Spec, analytic: &AnalyticSpec, max_bytes: Option<u64>)
         .map_err(|error| spec.located("volume.analytic.field", error))?;
     let facts = [("format", "synthetic, by formula".to_string()), ("formula", describe(&analytic.field))];
     let facts = facts.map(|(label, text)| (label.to_string(), text)).to_vec();
-    Ok(Scan { volume, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes })
+    Ok(Scan { volume, labels: None, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes })
 }
 
 /// The spec's formula with every default filled in.

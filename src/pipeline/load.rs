@@ -2,15 +2,15 @@
 
 use super::{Options, analytic, memory};
 use crate::error::Result;
-use crate::io::{self, Scan, dicom::SeriesChoice, dicom::SliceSpacing};
-use crate::spec::{PhantomHead, PhantomRings, PhantomSpec, Series, SlicesName, Spec, VolumeSource};
+use crate::io::{self, Labels, Scan, dicom::SeriesChoice, dicom::SliceSpacing};
+use crate::spec::{MaskPhantom, PhantomHead, PhantomRings, PhantomSpec, Series, SlicesName, Spec, VolumeSource};
 use crate::synthetic::{self, HeadPhantom};
 
 /// Reads or makes the volume of a spec, its values understood as the spec says.
 ///
 /// # Errors
-/// As [`io::load`] and [`synthetic::head`], and `Fault::Spec` for a formula that cannot be read or sampled; `Fault::Limit`
-/// for a scan that takes more memory than the options allow.
+/// As [`io::load`], [`io::labels::read`] and [`synthetic::head`], and `Fault::Spec` for a formula that cannot be read or
+/// sampled; `Fault::Limit` for a scan that takes more memory than the options allow.
 pub fn load(spec: &Spec, options: &Options) -> Result<Scan> {
     let max_bytes = memory::limit_bytes(options);
     let scan = match spec.volume_source() {
@@ -23,11 +23,32 @@ pub fn load(spec: &Spec, options: &Options) -> Result<Scan> {
             let reading_bytes = 4 * (size as u64).pow(3);
             memory::refuse_beyond(max_bytes, reading_bytes, "volume.phantom.rings.size")?;
             let facts = vec![("format".to_string(), "synthetic rings in colours".to_string())];
-            Scan { volume: synthetic::rings(size)?, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes }
+            Scan {
+                volume: synthetic::rings(size)?,
+                labels: None,
+                facts,
+                warnings: Vec::new(),
+                files: Vec::new(),
+                reading_bytes,
+            }
         }
         VolumeSource::Analytic(formula) => analytic::load(spec, &formula, max_bytes)?,
     };
-    Ok(Scan { volume: spec.interpret(scan.volume), ..scan })
+    let labels = labels(spec, &scan)?;
+    Ok(Scan { volume: spec.interpret(scan.volume), labels, ..scan })
+}
+
+/// The labels that a mask asks for.
+fn labels(spec: &Spec, scan: &Scan) -> Result<Option<Labels>> {
+    let mask = spec.pipeline.effects.as_ref().and_then(|effects| effects.mask.as_ref());
+    match (spec.labels_path(), mask.and_then(|mask| mask.phantom)) {
+        (Some(path), _) => io::labels::read(&path, scan.volume.grid()).map(Some),
+        (None, Some(MaskPhantom::Structures)) => {
+            let names = synthetic::head_structures().map(|(label, name)| (name.to_owned(), label));
+            Labels::new(synthetic::head_labels(scan.volume.grid().dims()[0])?, names).map(Some)
+        }
+        (None, None) => Ok(None),
+    }
 }
 
 fn choice(series: Option<Series>) -> SeriesChoice {
@@ -60,5 +81,5 @@ fn phantom(head: &PhantomHead, max_bytes: Option<u64>) -> Result<Scan> {
     let reading_bytes = head.making_bytes()?;
     memory::refuse_beyond(max_bytes, reading_bytes, "volume.phantom.head.size")?;
     let volume = synthetic::head(&head)?;
-    Ok(Scan { volume, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes })
+    Ok(Scan { volume, labels: None, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes })
 }

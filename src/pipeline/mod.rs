@@ -5,6 +5,7 @@ mod certify;
 mod clip;
 mod digest;
 mod load;
+mod mask;
 mod measure;
 pub mod memory;
 mod sidecar;
@@ -16,7 +17,7 @@ use crate::error::{Error, Fault, Result};
 use crate::image::Image;
 use crate::integrate::{self, Rendered};
 use crate::io::{Scan, exr, png};
-use crate::plan::{Format, Output, Plan, VolumeInfo};
+use crate::plan::{Format, LabelInfo, Output, Plan, VolumeInfo};
 use crate::spec::Spec;
 
 pub use certify::Certificate;
@@ -73,6 +74,7 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
     let scan = stopwatch.time("load", || load(spec, options))?;
     let plan = stopwatch.time("plan", || plan(spec, &scan, options))?;
     memory::check(&plan, options)?;
+    let (scan, labels) = mask::classified(scan, &plan, &mut stopwatch)?;
     let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
     prepare_folder(&plan.output.path)?;
     let rendered = stopwatch.time("integrate", || integrate(&scan, &plan, progress))?;
@@ -81,7 +83,7 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
         stopwatch.time("certify", || Certificate::of(&rendered.image, &pixels_sha256, &scan.volume, &plan, count))
     });
     stopwatch.time("encode", || encode(&rendered.image, &plan.output, &texts(&rendered, &pixels_sha256)))?;
-    let made = Made { clipped, rendered: &rendered, pixels_sha256, certificate, stages: stopwatch.finish() };
+    let made = Made { labels, clipped, rendered: &rendered, pixels_sha256, certificate, stages: stopwatch.finish() };
     let sidecar = Sidecar::new(spec, &scan, &plan, made);
     let sidecar_path = sidecar.write_beside(&plan.output.path)?;
     refuse_above_tolerance(&plan.output.path, sidecar.certificate.as_ref())?;
@@ -93,7 +95,8 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
 /// # Errors
 /// As [`Plan::new`], and `Fault::Spec` for a picture whose suffix names no format.
 pub fn plan(spec: &Spec, scan: &Scan, options: &Options) -> Result<Plan> {
-    let info = VolumeInfo { reading_bytes: scan.reading_bytes, ..VolumeInfo::from(&scan.volume) };
+    let labels = scan.labels.as_ref().map(LabelInfo::from);
+    let info = VolumeInfo { reading_bytes: scan.reading_bytes, labels, ..VolumeInfo::from(&scan.volume) };
     Plan::new(spec, &info, options.output.as_deref())
 }
 

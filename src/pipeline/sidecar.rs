@@ -3,6 +3,7 @@
 //! A sidecar is made to be handed on with its picture: it holds hashes in place of the scan, and neither the path of the
 //! scan nor anything that a scanner wrote about the patient.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -29,6 +30,8 @@ pub struct Sidecar {
     pub plan: Value,
     /// The scan.
     pub volume: VolumeRecord,
+    /// The labels of the mask, where it has an effect.
+    pub labels: Option<LabelsRecord>,
     /// The picture.
     pub picture: PictureRecord,
     /// How the integral was computed.
@@ -83,6 +86,15 @@ pub struct VolumeRecord {
     pub value_range: [f64; 2],
 }
 
+/// The labels of a mask.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LabelsRecord {
+    /// SHA-256 of the labels, hashed as the values of a volume are.
+    pub values_sha256: String,
+    /// How many voxels have each label that occurs.
+    pub voxels: BTreeMap<u16, u64>,
+}
+
 /// The picture.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct PictureRecord {
@@ -114,6 +126,7 @@ pub struct MethodRecord {
 
 /// What a run has made by the time it writes its sidecar.
 pub(super) struct Made<'a> {
+    pub(super) labels: Option<LabelsRecord>,
     pub(super) clipped: Clipped,
     pub(super) rendered: &'a Rendered,
     pub(super) pixels_sha256: String,
@@ -127,9 +140,13 @@ impl Sidecar {
         Sidecar {
             tool: Tool::this(),
             inputs_sha256: input_hashes(spec),
-            pipeline: without(serde_json::json!(spec.pipeline), &[&["volume", "source"], &["output"]]),
+            pipeline: without(
+                serde_json::json!(spec.pipeline),
+                &[&["volume", "source"], &["effects", "mask", "source"], &["output"]],
+            ),
             plan: without(plan::explain_json(plan), &[&["output", "path"]]),
             volume: VolumeRecord::from(&scan.volume),
+            labels: made.labels,
             picture: PictureRecord {
                 file: plan.output.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
                 size: plan.scene.camera.size(),
@@ -204,8 +221,7 @@ impl MethodRecord {
 
 fn input_hashes(spec: &Spec) -> Vec<InputHash> {
     let hash = |name: &str, text: &str| InputHash { name: name.to_string(), sha256: digest::of_text(text) };
-    let presets = spec.layers().filter_map(|(_, preset)| preset);
-    let presets = presets.map(|loaded| hash(&loaded.preset.name, &loaded.text));
+    let presets = spec.presets().map(|loaded| hash(&loaded.preset.name, &loaded.text));
     std::iter::once(hash("pipeline", spec.text())).chain(presets).collect()
 }
 

@@ -172,6 +172,7 @@ pub fn explain_json(plan: &Plan) -> Value {
         "shading": plan.scene.shading.as_ref().map(shading_json),
         "clip": plan.scene.effects.clip.half_spaces.iter().map(half_space_json).collect::<Vec<_>>(),
         "effects": effects::effects_json(&plan.scene.effects),
+        "mask": plan.label_classes.as_ref().map(|classes| classes.description.as_str()),
         "background": match plan.scene.background {
             Background::Transparent => json!("transparent"),
             Background::Color(rgb) => json!(rgb),

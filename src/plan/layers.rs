@@ -43,38 +43,10 @@ pub(super) fn resolve(
     gradient_range_per_mm: f64,
     scales: Scales,
 ) -> Result<Vec<Layer>> {
-    let resolve = |(i, (layer, loaded)): (usize, (&LayerSpec, Option<&LoadedPreset>))| {
-        let key_path = format!("transfer_function.{i}");
-        let preset = loaded.map(|loaded| &loaded.preset);
-        let is_in_hu = preset.is_some_and(|p| p.values != Some(ValuesName::Arbitrary)) || layer.attenuation.is_some();
-        if is_in_hu {
-            let kind = if layer.attenuation.is_some() { "attenuation" } else { "preset" };
-            refuse_hu_for_other_values(spec, volume, layer, [&key_path, kind])?;
-        }
-        let widgets = preset.map(|p| &p.widgets).or(layer.widgets.as_ref());
-        let mut max_deviation = 0.0f64;
-        let mut terms = Vec::new();
-        for (k, widget) in widgets.into_iter().flatten().enumerate() {
-            let file = loaded.map_or(spec.path(), |loaded| &loaded.path);
-            let prefix = if loaded.is_some() { String::new() } else { format!("{key_path}.") };
-            let named = |error: Error| error.at(file).element(format!("{prefix}widgets.{k}"));
-            let expansion = expand(widget, layer.color).map_err(named)?;
-            max_deviation = max_deviation.max(expansion.max_deviation);
-            for term in expansion.terms {
-                terms.extend(placed(term, layer, scales).and_then(|t| simplified(t, gradient_range_per_mm))?);
-            }
-        }
-        let attenuation = layer.attenuation.as_ref().map(attenuation);
-        if let Some(attenuation) = attenuation {
-            let term = Term { curve: attenuation.curve()?, weight: None };
-            terms.extend(placed(term, layer, scales).and_then(|t| simplified(t, gradient_range_per_mm))?);
-        }
-        let name = match (preset, attenuation) {
-            (Some(preset), _) => preset.name.clone(),
-            (None, Some(attenuation)) => format!("attenuation at {} keV", attenuation.kev),
-            (None, None) => format!("layer {}", i + 1),
-        };
-        Ok(Layer { name, tissue: preset.and_then(|p| p.tissue.clone()), terms, max_deviation })
+    let resolve = |(i, (written, loaded)): (usize, (&LayerSpec, Option<&LoadedPreset>))| {
+        let (key_path, name) = (format!("transfer_function.{i}"), format!("layer {}", i + 1));
+        let place = Place { key_path: &key_path, name: &name };
+        layer(spec, volume, written, loaded, place, gradient_range_per_mm, scales)
     };
     spec.layers().enumerate().map(resolve).collect()
 }
@@ -82,6 +54,55 @@ pub(super) fn resolve(
 /// The usual tube voltage is 120 kVp, and its effective energy about 70 keV.
 fn attenuation(spec: &AttenuationSpec) -> Attenuation {
     Attenuation { kev: spec.kev, scanned_at_kev: spec.scanned_at_kev.unwrap_or(70.0) }
+}
+
+/// Where a layer is written, and what it is called unless it has a preset.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub(super) key_path: &'a str,
+    pub(super) name: &'a str,
+}
+
+/// One layer, with all extinction and emission scaled.
+pub(super) fn layer(
+    spec: &Spec,
+    volume: &VolumeInfo,
+    layer: &LayerSpec,
+    loaded: Option<&LoadedPreset>,
+    place: Place<'_>,
+    gradient_range_per_mm: f64,
+    scales: Scales,
+) -> Result<Layer> {
+    let preset = loaded.map(|loaded| &loaded.preset);
+    let is_in_hu = preset.is_some_and(|p| p.values != Some(ValuesName::Arbitrary)) || layer.attenuation.is_some();
+    if is_in_hu {
+        let kind = if layer.attenuation.is_some() { "attenuation" } else { "preset" };
+        refuse_hu_for_other_values(spec, volume, layer, [place.key_path, kind])?;
+    }
+    let widgets = preset.map(|p| &p.widgets).or(layer.widgets.as_ref());
+    let mut max_deviation = 0.0f64;
+    let mut terms = Vec::new();
+    for (k, widget) in widgets.into_iter().flatten().enumerate() {
+        let file = loaded.map_or(spec.path(), |loaded| &loaded.path);
+        let prefix = if loaded.is_some() { String::new() } else { format!("{}.", place.key_path) };
+        let named = |error: Error| error.at(file).element(format!("{prefix}widgets.{k}"));
+        let expansion = expand(widget, layer.color).map_err(named)?;
+        max_deviation = max_deviation.max(expansion.max_deviation);
+        for term in expansion.terms {
+            terms.extend(placed(term, layer, scales).and_then(|t| simplified(t, gradient_range_per_mm))?);
+        }
+    }
+    let attenuation = layer.attenuation.as_ref().map(attenuation);
+    if let Some(attenuation) = attenuation {
+        let term = Term { curve: attenuation.curve()?, weight: None };
+        terms.extend(placed(term, layer, scales).and_then(|t| simplified(t, gradient_range_per_mm))?);
+    }
+    let name = match (preset, attenuation) {
+        (Some(preset), _) => preset.name.clone(),
+        (None, Some(attenuation)) => format!("attenuation at {} keV", attenuation.kev),
+        (None, None) => place.name.to_owned(),
+    };
+    Ok(Layer { name, tissue: preset.and_then(|p| p.tissue.clone()), terms, max_deviation })
 }
 
 /// What is in HU means nothing on values of unknown meaning, unless the layer says how the two relate.

@@ -12,6 +12,7 @@ mod explain;
 mod integrator;
 mod layers;
 mod light;
+mod mask;
 mod method;
 mod model;
 mod output;
@@ -23,16 +24,17 @@ mod warnings;
 use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
 pub use layers::Layer;
+pub use mask::LabelClasses;
 pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
 pub use output::{Format, Output};
 pub use stages::{Omission, Stage};
-pub use volume_info::{Storage, VolumeInfo};
+pub use volume_info::{LabelInfo, Storage, VolumeInfo};
 
 use std::path::Path;
 
 use crate::demand::Demand;
 use crate::error::Result;
-use crate::scene::{Scene, Shading};
+use crate::scene::{Effects, Scene, Shading};
 use crate::spec::Spec;
 use crate::transfer::TransferFunction;
 use crate::volume::RgbaEncoding;
@@ -48,6 +50,8 @@ pub struct Plan {
     pub layers: Vec<Layer>,
     /// How the volume's colours are understood; `None` for a volume of values.
     pub colors: Option<RgbaEncoding>,
+    /// Which class of the scene's mask the voxels of each label have; `None` without a mask.
+    pub label_classes: Option<LabelClasses>,
     /// What the stages together read of the volume.
     pub demand: Demand,
     /// The file to write.
@@ -78,6 +82,8 @@ impl Plan {
         let light = light::resolve(spec);
         let layers = layers::resolve(spec, volume, gradient_range[1], light.scales)?;
         let terms = layers.iter().flat_map(|layer| layer.terms.iter().cloned()).collect();
+        let mask = mask::resolve(spec, volume, (window, gradient_range[1]), light.scales)?;
+        let (mask, label_classes) = mask.map(|m| (m.mask, m.classes)).unzip();
         let camera = camera::resolve(spec, &volume.grid)?;
         let surroundings = Surroundings {
             grid: &volume.grid,
@@ -92,12 +98,12 @@ impl Plan {
             shading: light.shading,
             camera,
             background: light.background,
-            effects,
+            effects: Effects { mask, ..effects },
         };
         let method = integrator::resolve(spec, volume);
         let demand = Demand {
             gradient: scene.shading.as_ref().is_some_and(Shading::is_lit),
-            gradient_magnitude: scene.transfer_function.reads_gradient(),
+            gradient_magnitude: scene.transfer_functions().any(TransferFunction::reads_gradient),
             macrocells: matches!(method, Method::March(_))
                 && model::skips_blocks(&scene.model)
                 && volume.uneven_slices_mm.is_none(),
@@ -108,6 +114,7 @@ impl Plan {
             method,
             layers,
             colors,
+            label_classes,
             demand,
             output,
             certify: spec.pipeline.certify.map(|pixels| pixels as usize),

@@ -2,11 +2,12 @@
 
 use crate::scene::{ClassifyAt, Model, Scene, ValueModel, ValueOf};
 use crate::spec::Spec;
+use crate::transfer::TransferFunction;
 use crate::volume::Grid;
 
 use super::model::{self, reads_transfer_function};
 use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, SampleRule, VolumeInfo};
-use super::{clip, voxels};
+use super::{clip, mask, voxels};
 
 /// One stage of the computation.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -57,6 +58,13 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         let channels = if plan.demand.gradient_magnitude { 2 } else { 1 };
         field("macrocells: value ranges of blocks of 8 x 8 x 8 cells", 8 * channels * block_count(&volume.grid));
     }
+    if let Some(classes) = &plan.label_classes {
+        stages.push(Stage {
+            name: "mask",
+            what: format!("a class for each voxel; {}", classes.description),
+            bytes: voxels,
+        });
+    }
     if reads_transfer_function(&plan.scene) && !given {
         stages.push(classify(plan));
     }
@@ -105,12 +113,14 @@ pub(super) fn block_count(grid: &Grid) -> u64 {
 
 fn classify(plan: &Plan) -> Stage {
     let tf = &plan.scene.transfer_function;
+    let own = plan.scene.transfer_functions().count() - 1;
     let values = tf.value_knots().len();
     let [low, high] = tf.window();
     let layers = match plan.layers.len() {
         1 => "1 layer".to_owned(),
         n => format!("{n} layers"),
     };
+    let layers = if own > 0 { format!("{layers} and {own} of labels") } else { layers };
     // Four channels in f32: linear along the value, bilinear in a patch.
     let (what, coefficients) = if plan.demand.gradient_magnitude {
         let gradients = tf.gradient_knots().len();
@@ -123,7 +133,7 @@ fn classify(plan: &Plan) -> Stage {
     } else {
         (format!("1D transfer function of {layers}, {values} knots, values {low} to {high}"), 2)
     };
-    Stage { name: "classify", what, bytes: (4 * 4 * coefficients * (values - 1)) as u64 }
+    Stage { name: "classify", what, bytes: (4 * 4 * coefficients * (values - 1) * (own + 1)) as u64 }
 }
 
 /// Name of a kernel by what it is made of, such as `march/i16/tf2d/lit`.
@@ -139,7 +149,9 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
         return format!("{method}/{}", voxels::kernel(scene, volume));
     }
     let storage = volume.storage.name();
-    let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
+    let by_gradient = scene.transfer_functions().any(TransferFunction::reads_gradient);
+    let masked = if scene.effects.mask.is_some() { "-masked" } else { "" };
+    let classifier = format!("{}{masked}", if by_gradient { "tf2d" } else { "tf1d" });
     match &scene.model {
         Model::Light => {}
         Model::Value(ValueModel { of: ValueOf::OpticalDepth, .. }) => {
@@ -248,6 +260,10 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec
     }
     if clip::written(spec).is_some() && plan.scene.effects.clip.half_spaces.is_empty() {
         omissions.push(Omission { what: "clipping", why: "effects.clip holds the whole volume".to_owned() });
+    }
+    if mask::written(spec).is_some() && plan.label_classes.is_none() {
+        let why = "all labels that occur show what the transfer function says".to_owned();
+        omissions.push(Omission { what: "mask", why });
     }
     if plan.certify.is_none() {
         omissions.push(Omission { what: "certificate", why: "certify asks for no pixels".to_owned() });

@@ -1,9 +1,12 @@
 //! What a plan needs to know of a volume: all but its samples.
 
+use std::collections::BTreeMap;
+
+use crate::io::Labels;
 use crate::volume::{Grid, Quantity, RgbaEncoding, Samples, Volume};
 
 /// What a plan needs to know of a volume: all but its samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct VolumeInfo {
     /// Lattice and affine.
     pub grid: Grid,
@@ -17,6 +20,17 @@ pub struct VolumeInfo {
     pub quantity: Quantity,
     /// Most bytes held while it was read.
     pub reading_bytes: u64,
+    /// Its labels, where a mask asks for them.
+    pub labels: Option<LabelInfo>,
+}
+
+/// What a plan needs to know of labels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LabelInfo {
+    /// How many voxels have each label that occurs.
+    pub counts: BTreeMap<u16, u64>,
+    /// Labels by their names, where they have names.
+    pub names: BTreeMap<String, u16>,
 }
 
 /// How samples are stored in memory.
@@ -94,6 +108,13 @@ impl From<&Volume> for VolumeInfo {
             value_range: volume.value_range(),
             quantity: volume.quantity(),
             reading_bytes: storage.bytes() * volume.grid().voxel_count() as u64,
+            labels: None,
         }
+    }
+}
+
+impl From<&Labels> for LabelInfo {
+    fn from(labels: &Labels) -> Self {
+        LabelInfo { counts: labels.counts().clone(), names: labels.names().clone() }
     }
 }

@@ -5,9 +5,9 @@ use crate::spec::{Spec, ValuesName};
 use crate::transfer::{Optics, Side, TransferFunction};
 use crate::volume::Quantity;
 
-use super::clip;
 use super::model::reads_transfer_function;
 use super::{Exact, Format, Method, Plan, VolumeInfo};
+use super::{clip, mask};
 
 pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -24,10 +24,13 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
                  normalise.hu widens it"
             ));
         }
-        if shows_nothing(tf, volume.value_range) {
+        if shown(plan, volume).all(|tf| shows_nothing(tf, volume.value_range)) {
             warnings
                 .push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
         }
+    }
+    for label in mask::without_voxels(spec, volume) {
+        warnings.push(format!("no voxel has the label {label} of effects.mask"));
     }
     if plan.colors.is_none() && is_black(&plan.scene) {
         let why = "nothing emits and the background is black, so the picture will be black";
@@ -93,6 +96,18 @@ fn adds_light_without_alpha(scene: &Scene) -> bool {
         && !terms.is_empty()
         && knots.all(|knot| knot.optics.extinction_per_mm == 0.0)
         && scene.background == Background::Transparent
+}
+
+/// The transfer functions by which some voxel shows.
+fn shown<'a>(plan: &'a Plan, volume: &'a VolumeInfo) -> impl Iterator<Item = &'a TransferFunction> {
+    let scene = &plan.scene;
+    let masked = scene.effects.mask.as_ref().zip(plan.label_classes.as_ref()).zip(volume.labels.as_ref());
+    let plain = masked.is_none().then_some(&scene.transfer_function);
+    let by_label = masked.into_iter().flat_map(|((mask, classes), labels)| {
+        let functions = labels.counts.keys().map(|&label| usize::from(classes.class(label)));
+        functions.filter_map(|class| mask.function(class, &scene.transfer_function))
+    });
+    plain.into_iter().chain(by_label)
 }
 
 /// True if the transfer function is 0 at all values of the volume, at any gradient magnitude.

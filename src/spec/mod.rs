@@ -32,8 +32,8 @@ pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
 pub use effects::{
     ClassifyAtName, ClipBoxSpec, ClipPlaneSpec, ClipSpec, DepthCueSpec, EffectsSpec, ExpFogSpec, FogSpec, HazeSpec,
-    LightSpec, LinearFogSpec, ProjectSpec, ProjectionOf, RangeSpec, ScatteringSpec, ShadingSpec, ShadowsSpec,
-    SurfaceSpec, TransportName, TrimSpec,
+    LabelSpec, LightSpec, LinearFogSpec, MaskPhantom, MaskSpec, OtherLabels, ProjectSpec, ProjectionOf, RangeSpec,
+    ScatteringSpec, ShadingSpec, ShadowsSpec, SurfaceSpec, TransportName, TrimSpec,
 };
 pub use integrate::{
     ColorsName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName,
@@ -51,6 +51,7 @@ pub use widget::{
     ContourSpec, EllipseSpec, EmissionSpec, GaussianSpec, PointSpec, RectangleSpec, TrapezoidSpec, TriangleSpec, Widget,
 };
 
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use crate::error::{Error, Result};
@@ -63,6 +64,8 @@ pub struct Spec {
     /// The pipeline as written, overrides applied.
     pub pipeline: Pipeline,
     presets: Vec<Option<LoadedPreset>>,
+    /// By the label whose own look they are.
+    label_presets: BTreeMap<String, LoadedPreset>,
     source: Source,
 }
 
@@ -109,7 +112,21 @@ impl Spec {
             layer.preset.as_ref().map(|name| library::find(name, &source, &key_path)).transpose()
         };
         let presets = pipeline.transfer_function.iter().enumerate().map(find).collect::<Result<_>>()?;
-        Ok(Spec { pipeline, presets, source })
+        let label_presets = Self::load_label_presets(&pipeline, &source)?;
+        Ok(Spec { pipeline, presets, label_presets, source })
+    }
+
+    fn load_label_presets(pipeline: &Pipeline, source: &Source) -> Result<BTreeMap<String, LoadedPreset>> {
+        let labels = pipeline.effects.iter().flat_map(|effects| &effects.mask).flat_map(|mask| &mask.labels);
+        let named = labels.filter_map(|(label, look)| match look {
+            LabelSpec::Own(LayerSpec { preset: Some(name), .. }) => Some((label, name)),
+            _ => None,
+        });
+        let find = |(label, name): (&String, &String)| {
+            let key_path = format!("effects.mask.labels.{label}.preset");
+            Ok((label.clone(), library::find(name, source, &key_path)?))
+        };
+        named.map(find).collect()
     }
 
     /// The pipeline's file.
@@ -125,6 +142,22 @@ impl Spec {
     /// The layers of the transfer function, each with its preset if it has one.
     pub fn layers(&self) -> impl Iterator<Item = (&LayerSpec, Option<&LoadedPreset>)> {
         self.pipeline.transfer_function.iter().zip(self.presets.iter().map(Option::as_ref))
+    }
+
+    /// The preset that a label of the mask looks like, if it has one.
+    pub fn label_preset(&self, label: &str) -> Option<&LoadedPreset> {
+        self.label_presets.get(label)
+    }
+
+    /// All presets that the pipeline names, those of the layers first.
+    pub fn presets(&self) -> impl Iterator<Item = &LoadedPreset> {
+        self.presets.iter().flatten().chain(self.label_presets.values())
+    }
+
+    /// The file of the mask's labels, relative to the working directory, if there is a mask from a file.
+    pub fn labels_path(&self) -> Option<PathBuf> {
+        let mask = self.pipeline.effects.as_ref()?.mask.as_ref()?;
+        mask.source.as_deref().map(|path| self.source.resolve("effects.mask.source", path))
     }
 
     /// Where the volume comes from.

@@ -96,6 +96,31 @@ pub fn head(phantom: &HeadPhantom) -> Result<Volume> {
             .found(noise_hu.to_string())
             .expected(format!("0 to {MAX_NOISE_HU} HU")));
     }
+    let mut voxels = room(&grid)?;
+    let scene = anatomy::head(edge_mm(&grid));
+    raster::scan(&scene, &grid, raster::Noise { seed, deviation_hu: noise_hu as f32 }, &mut voxels);
+    Volume::new(grid, Samples::I16(voxels), Rescale::IDENTITY, Quantity::Hu)
+}
+
+/// The label map of [`head`] at a size: in each voxel the number of the structure at its centre, from 1, or 0 outside the
+/// body; [`head_structures`] has their names.
+///
+/// # Errors
+/// As [`head`].
+pub fn head_labels(size: usize) -> Result<Volume> {
+    let grid = head_grid(size)?;
+    let mut voxels = room(&grid)?;
+    raster::structures(&anatomy::head(edge_mm(&grid)), &grid, &mut voxels);
+    Volume::new(grid, Samples::I16(voxels), Rescale::IDENTITY, Quantity::Arbitrary)
+}
+
+/// The structures of the head phantom, by number in its label map.
+pub fn head_structures() -> impl Iterator<Item = (u16, &'static str)> {
+    (1..).zip(anatomy::STRUCTURES)
+}
+
+/// A voxel of 0 for each of the grid's.
+fn room(grid: &Grid) -> Result<Vec<i16>> {
     let mut voxels = Vec::new();
     voxels.try_reserve_exact(grid.voxel_count()).map_err(|error| {
         Error::new(Fault::Limit, "there is no memory for the head phantom")
@@ -104,9 +129,7 @@ pub fn head(phantom: &HeadPhantom) -> Result<Volume> {
             .caused_by(error)
     })?;
     voxels.resize(grid.voxel_count(), 0);
-    let scene = anatomy::head(edge_mm(&grid));
-    raster::rasterize(&scene, &grid, raster::Noise { seed, deviation_hu: noise_hu as f32 }, &mut voxels);
-    Volume::new(grid, Samples::I16(voxels), Rescale::IDENTITY, Quantity::Hu)
+    Ok(voxels)
 }
 
 /// The lattice: voxels at the centres of equal parts of the field of view.

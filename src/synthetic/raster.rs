@@ -33,25 +33,40 @@ struct Block {
 }
 
 /// The slices of one task.
-struct Slab<'a> {
+struct Slab<'a, F> {
     grid: &'a Grid,
-    noise: Noise,
+    /// What a voxel stores, by a scene, its position in mm and its number.
+    sample: &'a F,
     first_slice: usize,
     voxels: &'a mut [i16],
 }
 
-/// Fills `voxels`, x fastest, on `grid`.
-pub(super) fn rasterize(scene: &Scene, grid: &Grid, noise: Noise, voxels: &mut [i16]) {
+/// Fills `voxels`, x fastest, on `grid` with values in HU.
+pub(super) fn scan(scene: &Scene, grid: &Grid, noise: Noise, voxels: &mut [i16]) {
+    let sample = |scene: &Scene, p: Vec3, counter: u64| {
+        let hu = scene.hu(p) + noise.deviation_hu * bell(noise.seed, counter);
+        // CT numbers have 12 bits: -1024 to 3071.
+        hu.round().clamp(-1024.0, 3071.0) as i16
+    };
+    rasterize(scene, grid, sample, voxels);
+}
+
+/// Fills `voxels` with the numbers of structures.
+pub(super) fn structures(scene: &Scene, grid: &Grid, voxels: &mut [i16]) {
+    rasterize(scene, grid, |scene: &Scene, p, _| i16::from(scene.structure(p)), voxels);
+}
+
+fn rasterize(scene: &Scene, grid: &Grid, sample: impl Fn(&Scene, Vec3, u64) -> i16 + Sync, voxels: &mut [i16]) {
     let [nx, ny, _] = grid.dims();
     voxels.par_chunks_mut(nx * ny * SLAB).enumerate().for_each(|(index, voxels)| {
         let first_slice = index * SLAB;
         let end = first_slice + voxels.len() / (nx * ny);
-        let mut slab = Slab { grid, noise, first_slice, voxels };
+        let mut slab = Slab { grid, sample: &sample, first_slice, voxels };
         slab.paint(scene, Block { low: [0, 0, first_slice], high: [nx, ny, end] });
     });
 }
 
-impl Slab<'_> {
+impl<F: Fn(&Scene, Vec3, u64) -> i16> Slab<'_, F> {
     /// Cuts the scene down to the block, and the block into smaller ones, until they are small.
     fn paint(&mut self, scene: &Scene, block: Block) {
         let scene = scene.near(block.ball(self.grid));
@@ -74,10 +89,7 @@ impl Slab<'_> {
             for j in block.low[1]..block.high[1] {
                 for i in block.low[0]..block.high[0] {
                     let counter = ((k * ny + j) * nx + i) as u64;
-                    let hu = scene.hu(position_mm(self.grid, [i, j, k]))
-                        + self.noise.deviation_hu * bell(self.noise.seed, counter);
-                    // CT numbers have 12 bits: -1024 to 3071.
-                    let stored = hu.round().clamp(-1024.0, 3071.0) as i16;
+                    let stored = (self.sample)(scene, position_mm(self.grid, [i, j, k]), counter);
                     self.voxels[((k - self.first_slice) * ny + j) * nx + i] = stored;
                 }
             }

@@ -13,6 +13,8 @@ pub(super) struct Tissue {
     coats: Vec<(f32, Material)>,
     /// How deep beneath the skin the solid is cut off, mm.
     beneath_skin_mm: Option<f32>,
+    /// Which structure of the body it belongs to, from 1; 0 for none.
+    structure: u8,
 }
 
 /// Tissues in the order in which they are painted.
@@ -27,12 +29,18 @@ pub(super) struct Scene {
 
 impl Tissue {
     pub(super) fn new(material: Material, solid: Solid) -> Self {
-        Tissue { solid, coats: vec![(0.0, material)], beneath_skin_mm: None }
+        Tissue { solid, coats: vec![(0.0, material)], beneath_skin_mm: None, structure: 0 }
     }
 
     /// With another material from `depth_mm` inwards.
     pub(super) fn core(mut self, depth_mm: f32, material: Material) -> Self {
         self.coats.push((depth_mm, material));
+        self
+    }
+
+    /// As a part of a structure, from 1.
+    pub(super) fn of_structure(mut self, structure: u8) -> Self {
+        self.structure = structure;
         self
     }
 
@@ -63,6 +71,16 @@ impl Scene {
             }
         }
         hu
+    }
+
+    /// The structure at `p`: that of the tissue painted last of those that have `p` inside; 0 outside of all.
+    pub(super) fn structure(&self, p: Vec3) -> u8 {
+        let mut skin_mm = None;
+        let mut is_inside = |tissue: &&Tissue| {
+            let mut beneath = |mm: f32| *skin_mm.get_or_insert_with(|| self.skin.distance(p)) + mm;
+            tissue.solid.distance(p) < 0.0 && tissue.beneath_skin_mm.is_none_or(|mm| beneath(mm) < 0.0)
+        };
+        self.tissues.iter().rev().find(|tissue| is_inside(tissue)).map_or(0, |tissue| tissue.structure)
     }
 
     /// A scene with the same values in `ball`, without what cannot matter there.
@@ -106,9 +124,9 @@ impl Tissue {
             _ => false,
         };
         let tissue = if same_everywhere {
-            Tissue { solid: Solid::Everywhere, coats, beneath_skin_mm: None }
+            Tissue { solid: Solid::Everywhere, coats, beneath_skin_mm: None, structure: self.structure }
         } else {
-            Tissue { solid: self.solid.near(ball), coats, beneath_skin_mm }
+            Tissue { solid: self.solid.near(ball), coats, beneath_skin_mm, structure: self.structure }
         };
         Some((tissue, covers))
     }
@@ -136,6 +154,7 @@ mod tests {
                 let (expected, found) = (head.hu(p), near.hu(p));
                 // Rounding differs where a solid is the whole of space in the ball.
                 assert!((expected - found).abs() < 0.1, "at {p}: found {found} HU, expected {expected}");
+                assert_eq!(near.structure(p), head.structure(p), "structure at {p}");
             }
         }
         let average = tissues_left as f32 / 300.0;

@@ -1,8 +1,8 @@
-//! Clipping as written: its forms, and what is wrong with others.
+//! Clipping and masks as written: their forms, and what is wrong with others.
 
-use pellucid::spec::{ClipBoxSpec, RangeSpec};
+use pellucid::spec::{ClipBoxSpec, LabelSpec, RangeSpec};
 
-use super::mistakes::check_after;
+use super::mistakes::{check, check_after};
 use super::{SHORT, read};
 
 #[test]
@@ -77,5 +77,59 @@ fn a_plane_needs_a_direction_and_one_place() {
     check_after(
         "effects: { clip: { planes: «[]» } }\n",
         "a value is out of range (effects.clip.planes): found a list of 0, expected 1 to 64 planes",
+    );
+}
+
+#[test]
+fn labels_hide_show_or_have_a_layer_of_their_own() {
+    let labels = "{ 1: hide, 2: show, left kidney: { preset: bone, color: red } }";
+    let text = format!("{SHORT}effects: {{ mask: {{ source: a.nrrd, default: hide, labels: {labels} }} }}\n");
+    let spec = read(&text).unwrap_or_else(|error| panic!("{error}"));
+    let mask = spec.pipeline.effects.as_ref().and_then(|e| e.mask.as_ref()).expect("it is written");
+    assert_eq!((&mask.labels["1"], &mask.labels["2"]), (&LabelSpec::Hide, &LabelSpec::Show));
+    let LabelSpec::Own(layer) = &mask.labels["left kidney"] else { panic!("found {mask:?}") };
+    assert_eq!(layer.preset.as_deref(), Some("bone"));
+    assert_eq!(spec.label_preset("left kidney").map(|p| p.preset.name.as_str()), Some("bone"));
+    let again = read(&serde_json::to_string(&spec.pipeline).unwrap()).unwrap();
+    assert_eq!(again.pipeline, spec.pipeline, "the sidecar's form reads back");
+}
+
+#[test]
+fn a_mask_that_means_nothing_is_refused() {
+    check_after(
+        "effects: { mask: «{ labels: { 1: hide } }» }\n",
+        "a key is missing (effects.mask): expected exactly one of source, phantom",
+    );
+    check_after(
+        "effects: { mask: «{ source: a.nrrd }» }\n",
+        "a key is missing (effects.mask.labels): expected labels, such as { 1: hide }",
+    );
+    check_after(
+        "effects: { mask: { source: a.nrrd, labels: { 1: «hidden» } } }\n",
+        "a value cannot be used (effects.mask.labels.1): found \"hidden\", expected hide, show, or a layer such as \
+         { preset: bone }",
+    );
+    check_after(
+        "effects: { mask: { source: a.nrrd, labels: { 70000: «hide» } } }\n",
+        "a value is out of range (effects.mask.labels.70000): found \"hide\", expected a label from 0 to 65535, or a name",
+    );
+    check_after(
+        "effects: { mask: { source: a.nrrd, labels: { 1: { preset: bone, opacity_scale: «-1» } } } }\n",
+        "a value is out of range (effects.mask.labels.1.opacity_scale): found -1, expected at least 0",
+    );
+    check_after(
+        "effects: { mask: { source: a.nrrd, default: «hidden», labels: { 1: hide } } }\n",
+        "there is no such choice (effects.mask.default): found hidden, expected one of show, hide\n  remedy: did you mean \
+         hide?",
+    );
+    let projected = "version: 1\nvolume: { source: a.nrrd }\neffects: { project: { show: maximum }, mask: MASK }\n";
+    check(
+        &projected.replace("MASK", "{ source: b.nrrd, labels: { 1: «{ preset: bone }» } }"),
+        "nothing would read this key: effects.project and effects.surfaces show values, whatever their look \
+         (effects.mask.labels.1)\n  remedy: remove the key",
+    );
+    check(
+        &projected.replace("MASK", "{ phantom: «structures», labels: { 1: hide } }"),
+        "nothing would read this key: the volume is a scan, not a phantom (effects.mask.phantom)\n  remedy: remove the key",
     );
 }

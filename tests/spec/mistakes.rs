@@ -6,7 +6,7 @@ use pellucid::spec::BUILT_IN_PRESETS;
 use super::{SHORT, mistake};
 
 /// Checks the message and that the place is the marked one.
-fn check(marked: &str, message: &str) {
+pub(super) fn check(marked: &str, message: &str) {
     let text = marked.replace(['«', '»'], "");
     let error = mistake(&text);
     let found = error.to_string();

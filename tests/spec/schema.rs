@@ -42,9 +42,9 @@ fn complaint(root: &Value, schema: &Value, instance: &Value) -> Option<String> {
                     .find_map(|(key, v)| complaint(root, value.get(key)?, v).map(|c| format!("{key}: {c}")));
             }
             "additionalProperties" => {
-                assert_eq!(value, &json!(false));
                 let known = keywords.get("properties").and_then(Value::as_object).cloned().unwrap_or_else(Map::new);
-                instance.as_object().is_none_or(|object| object.keys().all(|key| known.contains_key(key)))
+                let mut others = instance.as_object()?.iter().filter(|(key, _)| !known.contains_key(*key));
+                return others.find_map(|(key, v)| complaint(root, value, v).map(|c| format!("{key}: {c}")));
             }
             // A fraction needs its stroke and a colour its mark; that much of the patterns is checked here.
             "pattern" => {
@@ -106,6 +106,9 @@ fn mistakes_do_not() {
         ("integrate: exact", "integrate: precise"),
         ("integrate: exact", "integrate: { exact: { tolerance: null } }"),
         ("phantom: head", "phantom: 3"),
+        ("integrate: exact", "effects: { mask: { source: a.nrrd, labels: { 1: hidden } } }"),
+        ("integrate: exact", "effects: { mask: { source: a.nrrd, labels: { 1: { presett: bone } } } }"),
+        ("integrate: exact", "effects: { clip: { box: { mm: [open, closed, open] } } }"),
     ] {
         let bad = good.replace(right, wrong);
         assert!(complaint(&schema, &schema, &yaml(&bad)).is_some(), "this satisfies the schema:\n{bad}");

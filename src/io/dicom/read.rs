@@ -48,7 +48,7 @@ pub fn read_spaced(path: &Path, choice: &SeriesChoice, spacing: SliceSpacing, ma
         .and_then(|volume| stack.slices.iter().cloned().try_fold(volume, Volume::with_slices))
         .map_err(|error| error.at(path))?;
     let facts = facts(series, &stack, assembled.rescale_text);
-    Ok(Scan { facts, warnings, files: fates(&folder, series), volume, reading_bytes })
+    Ok(Scan { labels: None, facts, warnings, files: fates(&folder, series), volume, reading_bytes })
 }
 
 /// What the values measure: Rescale Type is HU unless it says otherwise (PS3.3 §C.8.2.1 and §C.11.1.1.2).

@@ -102,7 +102,8 @@ pub fn read_within(path: &Path, max_bytes: Option<u64>) -> Result<Scan> {
     }
     .map_err(|error| error.at(path))?;
     let volume = Volume::new(grid, samples, rescale, quantity(header.element_type)).map_err(|error| error.at(path))?;
-    Ok(Scan { facts: facts(&header, &volume, files.len()), volume, warnings, files, reading_bytes })
+    let facts = facts(&header, &volume, files.len());
+    Ok(Scan { labels: None, facts, volume, warnings, files, reading_bytes })
 }
 
 fn quantity(element_type: ElementType) -> Quantity {

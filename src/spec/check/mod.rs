@@ -5,6 +5,7 @@ mod camera;
 mod clip;
 mod effects;
 mod light;
+mod mask;
 mod pipeline;
 mod show;
 mod widget;

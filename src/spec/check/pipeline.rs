@@ -6,6 +6,7 @@ use super::analytic::check_analytic;
 use super::camera::check_camera;
 use super::effects::{check_effects, check_what_shows};
 use super::light::check_emission;
+use super::mask::check_mask;
 use super::widget::check_widgets;
 use super::{Check, join};
 use crate::error::Result;
@@ -35,6 +36,9 @@ pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> R
     }
     if let Some(effects) = &pipeline.effects {
         check_effects(check, effects)?;
+        if let Some(mask) = &effects.mask {
+            check_mask(check, pipeline, mask)?;
+        }
     }
     if let Some(camera) = &pipeline.camera {
         check_camera(check, camera)?;
@@ -86,7 +90,7 @@ fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
     check.unread("volume.shift_hu", contradiction, "the values are said to be arbitrary, not HU")
 }
 
-fn check_layer(check: Check<'_>, path: &str, layer: &LayerSpec) -> Result<()> {
+pub(super) fn check_layer(check: Check<'_>, path: &str, layer: &LayerSpec) -> Result<()> {
     let (preset, widgets) = (layer.preset.is_some(), layer.widgets.is_some());
     let attenuation = layer.attenuation.as_ref();
     let kinds = [("preset", preset), ("widgets", widgets), ("attenuation", attenuation.is_some())];

@@ -4,6 +4,7 @@ mod clip;
 mod depth_cue;
 mod fog;
 mod haze;
+mod mask;
 mod scattering;
 mod shading;
 mod shadows;
@@ -13,6 +14,7 @@ pub use clip::{ClipBoxSpec, ClipPlaneSpec, ClipSpec, RangeSpec, TrimSpec};
 pub use depth_cue::DepthCueSpec;
 pub use fog::{ExpFogSpec, FogSpec, LinearFogSpec};
 pub use haze::HazeSpec;
+pub use mask::{LabelSpec, MaskPhantom, MaskSpec, OtherLabels};
 pub use scattering::ScatteringSpec;
 pub use shading::{LightSpec, ShadingSpec};
 pub use shadows::ShadowsSpec;
@@ -31,6 +33,9 @@ pub struct EffectsSpec {
     /// What of the transfer function shows; `both` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light: Option<TransportName>,
+    /// Hides labels of a segmentation, or gives them a look of their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mask: Option<MaskSpec>,
     /// Levoy's gradient shading with the Blinn-Phong reflection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingSpec>,

@@ -19,18 +19,27 @@ mod vessels;
 use super::scene::{Scene, Tissue};
 use super::tissue::{FAT, SKIN};
 
+/// Names of the structures of the head, from number 1, in the order in which they are painted. The skin is all that is
+/// in no other, the fat beneath it included; glands and cartilage count as muscle, air and membranes as airways.
+pub(super) const STRUCTURES: [&str; 10] =
+    ["skin", "muscle", "brain", "eyes", "skull", "jaw", "spine", "airways", "teeth", "vessels"];
+
 /// All tissues, in the order in which they are painted.
 pub(super) fn head(edge_mm: f32) -> Scene {
     let skin = face::skin();
-    let mut tissues = vec![Tissue::new(SKIN, skin.clone()).core(2.0, FAT)];
-    tissues.extend(muscle::tissues());
-    tissues.extend(brain::tissues());
-    tissues.extend(eye::tissues());
-    tissues.extend(skull::tissues());
-    tissues.extend(jaw::tissues());
-    tissues.extend(spine::tissues());
-    tissues.extend(airway::tissues());
-    tissues.extend(teeth::tissues());
-    tissues.extend(vessels::tissues());
-    Scene { skin, tissues, edge_mm }
+    let structures = [
+        vec![Tissue::new(SKIN, skin.clone()).core(2.0, FAT)],
+        muscle::tissues(),
+        brain::tissues(),
+        eye::tissues(),
+        skull::tissues(),
+        jaw::tissues(),
+        spine::tissues(),
+        airway::tissues(),
+        teeth::tissues(),
+        vessels::tissues(),
+    ];
+    let numbered = structures.into_iter().zip(1..);
+    let tissues = numbered.flat_map(|(tissues, structure)| tissues.into_iter().map(move |t| t.of_structure(structure)));
+    Scene { skin, tissues: tissues.collect(), edge_mm }
 }
