@@ -8,6 +8,7 @@ use pellucid::spec::Spec;
 use pellucid::volume::{Grid, Quantity};
 
 mod camera;
+mod colors;
 mod demand;
 mod explain;
 mod method;

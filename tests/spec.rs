@@ -10,6 +10,7 @@ mod mistakes;
 mod overrides;
 mod presets;
 mod schema;
+mod stack;
 
 /// The shortest pipeline.
 const SHORT: &str = "version: 1

@@ -17,16 +17,21 @@ pub(super) struct ResolvedLight {
 pub(super) fn resolve(spec: &Spec) -> ResolvedLight {
     let written = spec.pipeline.effects.as_ref().and_then(|effects| effects.shading.as_ref()).map(shading);
     let background = spec.pipeline.image.as_ref().and_then(|image| image.background);
-    let background = match background.unwrap_or(BackgroundSpec::Color(Color::BLACK)) {
-        BackgroundSpec::Transparent => Background::Transparent,
-        BackgroundSpec::Color(Color(rgb)) => Background::Color(rgb),
-    };
+    let background = self::background(background);
     match written {
         // Without light, shading is a constant factor, and no gradient need be computed for it.
         Some(Shading { diffuse, specular, ambient, .. }) if diffuse == 0.0 && specular == 0.0 => {
             ResolvedLight { shading: None, emission_scale: ambient, background }
         }
         shading => ResolvedLight { shading, emission_scale: 1.0, background },
+    }
+}
+
+/// What is behind; black unless told.
+pub(super) fn background(written: Option<BackgroundSpec>) -> Background {
+    match written.unwrap_or(BackgroundSpec::Color(Color::BLACK)) {
+        BackgroundSpec::Transparent => Background::Transparent,
+        BackgroundSpec::Color(Color(rgb)) => Background::Color(rgb),
     }
 }
 

@@ -14,6 +14,7 @@ mod light;
 mod method;
 mod model;
 mod output;
+mod stack;
 mod stages;
 mod volume_info;
 mod voxels;
@@ -23,6 +24,7 @@ pub use explain::{explain, explain_json};
 pub use layers::Layer;
 pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
 pub use output::{Format, Output};
+pub use stack::StackPlan;
 pub use stages::{Omission, Stage};
 pub use volume_info::{Storage, VolumeInfo};
 

@@ -195,6 +195,7 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec) -> Vec<Omission> {
     if !plan.demand.macrocells {
         let why = match plan.method {
             Method::Reference => "the reference skips nothing",
+            _ if plan.colors.is_some() => "the exact integrator skips cell by cell, by the colours at their corners",
             _ => "the exact integrator skips cell by cell, by the values at their corners",
         };
         omit("macrocells", why);

@@ -20,6 +20,7 @@ mod pipeline;
 mod preset;
 mod schema;
 mod source;
+mod stack;
 mod suggest;
 mod tree;
 mod typed;
@@ -38,7 +39,8 @@ pub use pipeline::{
     PhantomRings, PhantomSpec, Pipeline, Series, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
-pub use schema::{pipeline_schema, preset_schema};
+pub use schema::{pipeline_schema, preset_schema, stack_schema};
+pub use stack::{AlphaName, Document, Stack, StackImageSpec, StackSpec};
 pub use widget::{
     ContourSpec, EllipseSpec, EmissionSpec, GaussianSpec, PointSpec, RectangleSpec, TrapezoidSpec, TriangleSpec, Widget,
 };

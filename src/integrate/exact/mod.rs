@@ -3,7 +3,8 @@
 //! In a cell the value along a ray is an exact cubic, and so is the gradient magnitude. The segment is cut where a cubic
 //! crosses a knot of the transfer function (`splits`); between cuts extinction and emission are polynomials
 //! (`medium`), optical depth is exact, and the emitted light has a proven error (`piece`). Pieces are halved until the
-//! ray keeps within its `budget`. This scalar kernel, in f64, is the twin of every faster one.
+//! ray keeps within its `budget`. Where extinction and emission are given at the voxels (`voxels`) they are cubics
+//! themselves, and nothing is cut. This scalar kernel, in f64, is the twin of every faster one.
 
 mod budget;
 mod cells;

@@ -3,9 +3,11 @@
 mod camera;
 mod effects;
 mod pipeline;
+mod stack;
 mod widget;
 
 pub(super) use pipeline::check_pipeline;
+pub(super) use stack::check_stack;
 pub(super) use widget::check_preset;
 
 use super::source::Source;
