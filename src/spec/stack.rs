@@ -68,7 +68,7 @@ pub enum Document {
     /// A scan and what is pictured of it.
     Scan(Box<Spec>),
     /// A stack of pictures: the file has the key `layers`.
-    Stack(StackSpec),
+    Stack(Box<StackSpec>),
 }
 
 impl Document {
@@ -79,7 +79,7 @@ impl Document {
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self> {
         let source = Source::read(path, overrides)?;
         if source.has("layers") {
-            StackSpec::from_source(source).map(Document::Stack)
+            StackSpec::from_source(source).map(|stack| Document::Stack(Box::new(stack)))
         } else {
             Spec::from_source(source).map(|spec| Document::Scan(Box::new(spec)))
         }
