@@ -5,6 +5,7 @@ mod masks;
 mod pictures;
 mod program;
 mod scans;
+mod stacks;
 
 use program::pellucid;
 
@@ -26,7 +27,7 @@ fn every_shell_gets_a_completion_script() {
 
 #[test]
 fn the_schemas_are_json() {
-    for kind in ["pipeline", "preset"] {
+    for kind in ["pipeline", "preset", "stack"] {
         let schema: serde_json::Value =
             serde_json::from_str(&pellucid(&["schema", kind]).success().stdout).expect("valid JSON");
         assert_eq!(schema["title"], format!("pellucid {kind}"), "names what it describes");

@@ -92,6 +92,7 @@ fn the_keys_of_a_pipeline_are_explained() {
     }
     let mut found = std::collections::BTreeSet::new();
     keys(&pellucid::spec::pipeline_schema(), &mut found);
+    keys(&pellucid::spec::stack_schema(), &mut found);
     let explained =
         |key: &String| PIPELINES_README.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == key);
     let unexplained: Vec<&String> = found.iter().filter(|key| !explained(key)).collect();

@@ -9,6 +9,7 @@ use pellucid::volume::{Grid, Quantity};
 
 mod camera;
 mod clip;
+mod colors;
 mod demand;
 mod explain;
 mod mask;

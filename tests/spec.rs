@@ -12,6 +12,7 @@ mod overrides;
 mod presets;
 mod schema;
 mod show;
+mod stack;
 
 /// The shortest pipeline.
 const SHORT: &str = "version: 1

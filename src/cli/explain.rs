@@ -2,8 +2,8 @@
 
 use pellucid::Result;
 use pellucid::pipeline;
-use pellucid::plan::{explain, explain_json};
-use pellucid::spec::Spec;
+use pellucid::plan::{StackPlan, explain, explain_json};
+use pellucid::spec::Document;
 
 use super::{Format, PipelineArguments, stdout};
 
@@ -21,7 +21,16 @@ pub(super) struct Explain {
 impl Explain {
     /// Prints the plan; reads the scan, since a plan is for one volume, and renders nothing.
     pub(super) fn run(&self) -> Result<()> {
-        let spec = Spec::load(&self.pipeline.pipeline, &self.pipeline.overrides())?;
+        let spec = match Document::load(&self.pipeline.pipeline, &self.pipeline.overrides())? {
+            Document::Scan(spec) => spec,
+            Document::Stack(stack) => {
+                let plan = StackPlan::new(&stack, None)?;
+                return match self.format {
+                    Format::Text => stdout::print(&plan.explain()),
+                    Format::Json => stdout::print_json(&plan.explain_json()),
+                };
+            }
+        };
         let options = self.pipeline.options(None);
         let scan = pipeline::load(&spec, &options)?;
         let plan = pipeline::plan(&spec, &scan, &options)?;

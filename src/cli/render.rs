@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use pellucid::Result;
 use pellucid::pipeline::{self, Outcome};
-use pellucid::spec::Spec;
+use pellucid::spec::Document;
 
 use super::progress::Bar;
 use super::{Global, PipelineArguments, stderr, stdout};
@@ -29,9 +29,20 @@ impl Render {
     pub(super) fn run(&self, global: &Global) -> Result<()> {
         let mut overrides = self.pipeline.overrides();
         overrides.extend(self.certify.map(|count| format!("certify={count}")));
-        let spec = Spec::load(&self.pipeline.pipeline, &overrides)?;
         let bar = Bar::new(global.quiet);
         let options = self.pipeline.options(self.output.clone());
+        let spec = match Document::load(&self.pipeline.pipeline, &overrides)? {
+            Document::Scan(spec) => spec,
+            Document::Stack(stack) => {
+                let outcome = pipeline::composite(&stack, &options, &|event| bar.hear(event));
+                bar.clear();
+                let outcome = outcome?;
+                if !global.quiet {
+                    stderr::say(&format!("how it was made: {}", outcome.sidecar_path.display()));
+                }
+                return stdout::print(&outcome.picture.display().to_string());
+            }
+        };
         let outcome = pipeline::run(&spec, &options, &|event| bar.hear(event));
         bar.clear();
         let outcome = outcome?;

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use pellucid::Result;
-use pellucid::spec::{pipeline_schema, preset_schema};
+use pellucid::spec::{pipeline_schema, preset_schema, stack_schema};
 
 use super::stdout;
 
@@ -18,6 +18,7 @@ pub(super) struct Schema {
 enum Kind {
     Pipeline,
     Preset,
+    Stack,
 }
 
 impl Schema {
@@ -26,6 +27,7 @@ impl Schema {
         stdout::print_json(&match self.kind {
             Kind::Pipeline => pipeline_schema(),
             Kind::Preset => preset_schema(),
+            Kind::Stack => stack_schema(),
         })
     }
 }

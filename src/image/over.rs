@@ -17,7 +17,7 @@ pub enum Association {
     /// They are not, as the PNG standard has it.
     #[default]
     Straight,
-    /// They are: also called premultiplied.
+    /// They are, also called premultiplied: as encoded, the way programs do that hold 8 bits.
     Associated,
 }
 

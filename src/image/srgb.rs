@@ -45,6 +45,15 @@ pub fn decode16(pixel: [u16; 4]) -> [f32; 4] {
     premultiplied(pixel.map(|v| f32::from(v) / 65_535.0))
 }
 
+/// An sRGB pixel in [0, 1] whose encoded colour was multiplied by its alpha, as linear and premultiplied; `None` if a colour
+/// is above the alpha, which no product can be.
+pub fn decode_associated([r, g, b, a]: [f32; 4]) -> Option<[f32; 4]> {
+    if r.max(g).max(b) > a {
+        return None;
+    }
+    Some(if a > 0.0 { premultiplied([r / a, g / a, b / a, a]) } else { [0.0; 4] })
+}
+
 /// Whole numbers from 0 to `largest`, red to alpha.
 fn quantise([r, g, b, a]: [f32; 4], largest: f32) -> [f32; 4] {
     if a <= 0.0 {
@@ -104,6 +113,19 @@ mod tests {
             let pixel = [level, 65_535 - level, 1, 65_535];
             assert_eq!(encode16(decode16(pixel)), pixel);
         }
+    }
+
+    #[test]
+    fn associated_and_straight_pixels_of_one_color_are_one() {
+        for (straight, alpha) in [([0.5, 1.0, 0.0], 0.25), ([0.2, 0.04, 0.9], 1.0), ([1.0, 1.0, 1.0], 1.0 / 255.0)] {
+            let [r, g, b] = straight.map(|c: f32| c * alpha);
+            let found = decode_associated([r, g, b, alpha]).expect("a product");
+            let expected = premultiplied([straight[0], straight[1], straight[2], alpha]);
+            let off = found.iter().zip(expected).map(|(x, y)| (x - y).abs()).fold(0.0, f32::max);
+            assert!(off < 1e-6, "found {found:?}, expected {expected:?}");
+        }
+        assert_eq!(decode_associated([0.0; 4]), Some([0.0; 4]), "nothing");
+        assert_eq!(decode_associated([0.5, 0.0, 0.0, 0.25]), None, "brighter than its alpha allows");
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::path::Path;
 use png::{BitDepth, ColorType, SrgbRenderingIntent, Transformations};
 
 use crate::error::{Error, Fault, Result};
+use crate::image::over::Association;
 use crate::image::{Image, srgb};
 use crate::io::{Picture, refuse_not_finite, whole_file};
 
@@ -75,6 +76,14 @@ fn encode(image: &Image, depth: Depth, channels: usize) -> Vec<u8> {
 /// `Fault::Input` for a file that is missing or damaged, `Fault::Unsupported` for one that says its samples are not
 /// sRGB.
 pub fn read(path: &Path) -> Result<Picture> {
+    read_as(path, Association::Straight)
+}
+
+/// As [`read`], for files whose colours are multiplied by their alpha too.
+///
+/// # Errors
+/// As [`read`], and `Fault::Input` for a pixel whose colour is above its alpha where colours are said to be multiplied by it.
+pub fn read_as(path: &Path, association: Association) -> Result<Picture> {
     let damaged = |cause: png::DecodingError| {
         Error::new(Fault::Input, "the picture cannot be read as PNG").at(path).caused_by(cause)
     };
@@ -107,7 +116,10 @@ pub fn read(path: &Path) -> Result<Picture> {
     reader.finish().map_err(damaged)?;
 
     let (width, height) = (frame.width as usize, frame.height as usize);
-    let pixels = decode(&samples, frame.color_type, frame.bit_depth);
+    let pixels = match association {
+        Association::Straight => decode(&samples, frame.color_type, frame.bit_depth),
+        Association::Associated => decode_associated(path, width, &samples, frame.color_type, frame.bit_depth)?,
+    };
     if pixels.len() != width * height {
         return Err(Error::new(Fault::Input, "the picture has the wrong number of samples").at(path));
     }
@@ -131,6 +143,38 @@ fn decode(samples: &[u8], color: ColorType, depth: BitDepth) -> Vec<[f32; 4]> {
             samples.chunks_exact(channels).map(pixel).collect()
         }
     }
+}
+
+/// The same where encoded colours are multiplied by their alpha.
+fn decode_associated(
+    path: &Path,
+    width: usize,
+    samples: &[u8],
+    color: ColorType,
+    depth: BitDepth,
+) -> Result<Vec<[f32; 4]>> {
+    let channels = color.samples();
+    let stored: Vec<[f32; 4]> = match depth {
+        BitDepth::Sixteen => {
+            let sample = |bytes: &[u8]| f32::from(u16::from_be_bytes([bytes[0], bytes[1]])) / f32::from(u16::MAX);
+            samples.chunks_exact(2 * channels).map(|p| rgba(p.chunks_exact(2).map(sample), color, 1.0)).collect()
+        }
+        _ => {
+            let sample = |&byte: &u8| f32::from(byte) / f32::from(u8::MAX);
+            samples.chunks_exact(channels).map(|p| rgba(p.iter().map(sample), color, 1.0)).collect()
+        }
+    };
+    let pixel = |(index, pixel): (usize, &[f32; 4])| {
+        srgb::decode_associated(*pixel).ok_or_else(|| {
+            Error::new(Fault::Input, "a pixel's colour is above its alpha, and so is not multiplied by it")
+                .at(path)
+                .element(format!("column {}, row {}", index % width, index / width))
+                .found(format!("{pixel:.3?}"))
+                .expected("red, green and blue of at most alpha")
+                .remedy("write alpha: straight")
+        })
+    };
+    stored.iter().enumerate().map(pixel).collect()
 }
 
 /// The samples of one pixel as red, green, blue and alpha.

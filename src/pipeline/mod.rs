@@ -9,6 +9,7 @@ mod mask;
 mod measure;
 pub mod memory;
 mod sidecar;
+mod stack;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,6 +26,7 @@ pub use clip::Clipped;
 pub use load::load;
 pub use measure::StageTime;
 pub use sidecar::Sidecar;
+pub use stack::{StackOutcome, StackSidecar, composite};
 
 use measure::Stopwatch;
 use sidecar::Made;
@@ -82,7 +84,9 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
     let certificate = plan.certify.map(|count| {
         stopwatch.time("certify", || Certificate::of(&rendered.image, &pixels_sha256, &scan.volume, &plan, count))
     });
-    stopwatch.time("encode", || encode(&rendered.image, &plan.output, &texts(&rendered, &pixels_sha256)))?;
+    stopwatch.time("encode", || {
+        encode(&rendered.image, &plan.output, &texts(&rendered.statistics.kernel, &pixels_sha256))
+    })?;
     let made = Made { labels, clipped, rendered: &rendered, pixels_sha256, certificate, stages: stopwatch.finish() };
     let sidecar = Sidecar::new(spec, &scan, &plan, made);
     let sidecar_path = sidecar.write_beside(&plan.output.path)?;
@@ -107,10 +111,10 @@ fn integrate(scan: &Scan, plan: &Plan, progress: Progress<'_>) -> Result<Rendere
 }
 
 /// What the picture's file says of itself, for those who have lost its sidecar.
-fn texts(rendered: &Rendered, pixels_sha256: &str) -> Vec<(String, String)> {
+fn texts(kernel: &str, pixels_sha256: &str) -> Vec<(String, String)> {
     let texts = [
         ("Software", concat!("pellucid ", env!("CARGO_PKG_VERSION"))),
-        ("pellucid kernel", &rendered.statistics.kernel),
+        ("pellucid kernel", kernel),
         ("pellucid pixels SHA-256", pixels_sha256),
     ];
     texts.map(|(keyword, text)| (keyword.to_string(), text.to_string())).to_vec()

@@ -147,11 +147,7 @@ impl Sidecar {
             plan: without(plan::explain_json(plan), &[&["output", "path"]]),
             volume: VolumeRecord::from(&scan.volume),
             labels: made.labels,
-            picture: PictureRecord {
-                file: plan.output.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-                size: plan.scene.camera.size(),
-                pixels_sha256: made.pixels_sha256,
-            },
+            picture: PictureRecord::new(&plan.output.path, plan.scene.camera.size(), made.pixels_sha256),
             method: MethodRecord::new(&plan.method, made.rendered),
             certificate: made.certificate,
             clipped: made.clipped,
@@ -167,19 +163,32 @@ impl Sidecar {
     /// # Errors
     /// `Fault::Output` if it cannot be written.
     pub(super) fn write_beside(&self, picture: &Path) -> Result<PathBuf> {
-        let mut name = picture.as_os_str().to_owned();
-        name.push(".json");
-        let path = PathBuf::from(name);
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|cause| Error::new(Fault::Internal, "the sidecar has no JSON form").at(&path).caused_by(cause))?;
-        whole_file::write(&path, |file| std::io::Write::write_all(file, format!("{text}\n").as_bytes()))?;
-        Ok(path)
+        write_json_beside(self, picture)
+    }
+}
+
+/// Writes a record as `<picture>.json` and gives its path.
+pub(super) fn write_json_beside(record: &impl Serialize, picture: &Path) -> Result<PathBuf> {
+    let mut name = picture.as_os_str().to_owned();
+    name.push(".json");
+    let path = PathBuf::from(name);
+    let text = serde_json::to_string_pretty(record)
+        .map_err(|cause| Error::new(Fault::Internal, "the sidecar has no JSON form").at(&path).caused_by(cause))?;
+    whole_file::write(&path, |file| std::io::Write::write_all(file, format!("{text}\n").as_bytes()))?;
+    Ok(path)
+}
+
+impl PictureRecord {
+    /// The record of a picture of this size at this path.
+    pub(super) fn new(path: &Path, size: [usize; 2], pixels_sha256: String) -> Self {
+        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        PictureRecord { file, size, pixels_sha256 }
     }
 }
 
 impl Tool {
     /// This build on this machine.
-    fn this() -> Self {
+    pub(super) fn this() -> Self {
         Tool {
             name: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
@@ -226,7 +235,7 @@ fn input_hashes(spec: &Spec) -> Vec<InputHash> {
 }
 
 /// The value without what stands at these key paths: the names of folders may be those of patients.
-fn without(mut value: Value, key_paths: &[&[&str]]) -> Value {
+pub(super) fn without(mut value: Value, key_paths: &[&[&str]]) -> Value {
     for key_path in key_paths {
         let Some((last, parents)) = key_path.split_last() else { continue };
         let parent = parents.iter().try_fold(&mut value, |value, key| value.get_mut(key));

@@ -41,10 +41,7 @@ pub(super) fn resolve(spec: &Spec) -> ResolvedLight {
         if scales.extinction == 0.0 { Shading { specular: 0.0, ..shading } } else { shading }
     });
     let background = spec.pipeline.image.as_ref().and_then(|image| image.background);
-    let background = match background.unwrap_or(BackgroundSpec::Color(Color::BLACK)) {
-        BackgroundSpec::Transparent => Background::Transparent,
-        BackgroundSpec::Color(Color(rgb)) => Background::Color(rgb),
-    };
+    let background = self::background(background);
     match written {
         // Without light, shading is a constant factor, and no gradient need be computed for it. What scatters is not
         // scaled by it.
@@ -53,6 +50,14 @@ pub(super) fn resolve(spec: &Spec) -> ResolvedLight {
             ResolvedLight { shading: None, scales, background }
         }
         shading => ResolvedLight { shading, scales, background },
+    }
+}
+
+/// What is behind; black unless told.
+pub(super) fn background(written: Option<BackgroundSpec>) -> Background {
+    match written.unwrap_or(BackgroundSpec::Color(Color::BLACK)) {
+        BackgroundSpec::Transparent => Background::Transparent,
+        BackgroundSpec::Color(Color(rgb)) => Background::Color(rgb),
     }
 }
 

@@ -16,6 +16,7 @@ mod mask;
 mod method;
 mod model;
 mod output;
+mod stack;
 mod stages;
 mod volume_info;
 mod voxels;
@@ -27,6 +28,7 @@ pub use layers::Layer;
 pub use mask::LabelClasses;
 pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
 pub use output::{Format, Output};
+pub use stack::StackPlan;
 pub use stages::{Omission, Stage};
 pub use volume_info::{LabelInfo, Storage, VolumeInfo};
 

@@ -31,8 +31,13 @@ impl Output {
     pub(super) fn resolve(spec: &Spec, wanted: Option<&Path>) -> Result<Self> {
         let path = wanted.map(Path::to_path_buf).or_else(|| spec.output());
         let path = path.unwrap_or_else(|| spec.path().with_extension("png"));
-        let suffix = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         let bits = spec.pipeline.image.as_ref().and_then(|image| image.bits).unwrap_or(Bits::Eight);
+        Output::at(path, bits)
+    }
+
+    /// The file of this name, with so many bits per channel if it is a PNG.
+    pub(super) fn at(path: PathBuf, bits: Bits) -> Result<Self> {
+        let suffix = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         let format = match (suffix.as_str(), bits) {
             ("png", Bits::Eight) => Format::Png8,
             ("png", Bits::Sixteen) => Format::Png16,

@@ -243,6 +243,9 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec
                 "slices are uneven, and blocks of cells are counted in even steps: every sample is taken"
             }
             Method::March(_) => "every value counts, so no block of cells could be skipped",
+            Method::Exact(_) if plan.colors.is_some() => {
+                "the exact integrator skips cell by cell, by the colours at their corners"
+            }
             Method::Exact(_) => "the exact integrator skips cell by cell, by the values at their corners",
         };
         omit("macrocells", why);

@@ -22,6 +22,7 @@ mod pipeline;
 mod preset;
 mod schema;
 mod source;
+mod stack;
 mod suggest;
 mod tree;
 mod typed;
@@ -46,7 +47,8 @@ pub use pipeline::{
     PhantomHead, PhantomRings, PhantomSpec, Pipeline, Series, SlicesName, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
-pub use schema::{pipeline_schema, preset_schema};
+pub use schema::{pipeline_schema, preset_schema, stack_schema};
+pub use stack::{AlphaName, Document, Stack, StackImageSpec, StackSpec};
 pub use widget::{
     ContourSpec, EllipseSpec, EmissionSpec, GaussianSpec, PointSpec, RectangleSpec, TrapezoidSpec, TriangleSpec, Widget,
 };

@@ -5,11 +5,16 @@ use schemars::transform::{Transform, transform_subschemas};
 use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value, json};
 
-use super::{Pipeline, Preset};
+use super::{Pipeline, Preset, Stack};
 
-/// Schema of a pipeline.
+/// Schema of a pipeline of a scan.
 pub fn pipeline_schema() -> Value {
     schema::<Pipeline>()
+}
+
+/// Schema of a stack of pictures.
+pub fn stack_schema() -> Value {
+    schema::<Stack>()
 }
 
 /// Schema of a preset.

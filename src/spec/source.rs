@@ -59,6 +59,11 @@ impl Source {
         &self.path
     }
 
+    /// True if this key is written at the top.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.tree.child(key).is_some()
+    }
+
     /// A path that is written at a key path: one of the file is relative to the file, one of an override to the working
     /// directory, where whoever typed it stands.
     pub(super) fn resolve(&self, key_path: &str, path: &Path) -> PathBuf {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use pellucid::spec::{BUILT_IN_PRESETS, Spec, built_in_preset, load_preset};
+use pellucid::spec::{BUILT_IN_PRESETS, Document, Spec, built_in_preset, load_preset};
 
 use super::{SHORT, mistake};
 
@@ -43,7 +43,7 @@ fn every_example_is_valid() {
     for entry in fs::read_dir(pipelines).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "yaml") {
-            Spec::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+            Document::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
             count += 1;
         }
     }

@@ -3,8 +3,9 @@
 //! In a cell the value along a ray is an exact cubic, and so is the gradient magnitude. The segment is cut where a cubic
 //! crosses a knot of the transfer function (`splits`); between cuts extinction and emission are polynomials
 //! (`medium`), optical depth is exact, and the emitted light has a proven error (`piece`). Pieces are halved until the
-//! ray keeps within its `budget`. This scalar kernel, in f64, is the twin of every faster one. Scenes with effects of light
-//! (`atmosphere`) are integrated in f64 alone.
+//! ray keeps within its `budget`. Where extinction and emission are given at the voxels (`voxels`) they are cubics
+//! themselves, and nothing is cut. This scalar kernel, in f64, is the twin of every faster one. Scenes with effects of light
+//! (`atmosphere`) or a mask (`masked`) are integrated in f64 alone.
 
 mod atmosphere;
 mod budget;

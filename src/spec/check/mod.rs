@@ -8,9 +8,11 @@ mod light;
 mod mask;
 mod pipeline;
 mod show;
+mod stack;
 mod widget;
 
 pub(super) use pipeline::check_pipeline;
+pub(super) use stack::check_stack;
 pub(super) use widget::check_preset;
 
 use super::source::Source;

@@ -12,8 +12,8 @@ use super::{Check, join};
 use crate::error::Result;
 use crate::spec::source::Source;
 use crate::spec::{
-    AttenuationSpec, ImageSpec, IntegrateSpec, LayerSpec, MarchSpec, OrderName, PhantomSpec, Pipeline, ValuesName,
-    VolumeSpec,
+    AttenuationSpec, Bits, ImageSpec, IntegrateSpec, LayerSpec, MarchSpec, OrderName, PhantomSpec, Pipeline,
+    ValuesName, VolumeSpec,
 };
 use crate::transfer::attenuation::ENERGIES_KEV;
 
@@ -51,7 +51,7 @@ pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> R
     check_output(check, pipeline.image.as_ref(), pipeline.output.as_deref())
 }
 
-fn extension(path: &Path) -> String {
+pub(super) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
@@ -141,16 +141,17 @@ fn check_march(check: Check<'_>, march: &MarchSpec) -> Result<()> {
 }
 
 fn check_output(check: Check<'_>, image: Option<&ImageSpec>, output: Option<&Path>) -> Result<()> {
+    check_bits(check, image.and_then(|image| image.bits), output)?;
+    let Some(image) = image else { return Ok(()) };
+    let size = image.size.unwrap_or([1, 1]);
+    check.require("image.size", size.iter().all(|n| (1..=65_535).contains(n)), "[width, height], each from 1 to 65535")
+}
+
+/// Checks the name of a picture, and that its format reads the number of bits.
+pub(super) fn check_bits(check: Check<'_>, bits: Option<Bits>, output: Option<&Path>) -> Result<()> {
     let extension = output.map(extension);
     let known = extension.as_deref().is_none_or(|e| matches!(e, "png" | "exr"));
     check.require("output", known, "a file name that ends in .png or .exr")?;
-    let Some(image) = image else { return Ok(()) };
-    let size = image.size.unwrap_or([1, 1]);
-    check.require(
-        "image.size",
-        size.iter().all(|n| (1..=65_535).contains(n)),
-        "[width, height], each from 1 to 65535",
-    )?;
     let is_exr = extension.as_deref() == Some("exr");
-    check.unread("image.bits", image.bits.is_some() && is_exr, "an OpenEXR picture has 32-bit floats")
+    check.unread("image.bits", bits.is_some() && is_exr, "an OpenEXR picture has 32-bit floats")
 }
