@@ -40,8 +40,8 @@ fn a_series_comes_back_with_every_slice_at_its_place() {
     let found = &scan.volume;
     assert_eq!(found.grid().dims(), expected.grid().dims());
     assert_eq!(found.values_sha256(), expected.values_sha256());
-    for k in 0..PLACES_MM.len() {
-        let (at, place) = (found.voxel_mm([3, 2, k]), DVec3::new(1.5, 1.5, PLACES_MM[k]));
+    for (k, z) in PLACES_MM.into_iter().enumerate() {
+        let (at, place) = (found.voxel_mm([3, 2, k]), DVec3::new(1.5, 1.5, z));
         assert!((at - place).length() < 1e-9, "slice {k}: found {at}, expected {place}");
     }
     assert_range_mm(found, [1.0, 3.0]);
