@@ -70,6 +70,7 @@ pub fn chord_mm(grid: &Grid, ray: &Ray) -> Option<[f64; 2]> {
 
 /// The value at a point in LPS mm, trilinear and in f64; a point beyond the domain has the value of its border. At least
 /// two voxels along each axis.
+/// For even slices only, as the volumes of this module are.
 pub fn interpolate(volume: &Volume, point_mm: DVec3) -> f64 {
     let grid = volume.grid();
     let index = grid.lps_mm_to_index().transform_point3(point_mm);

@@ -35,7 +35,8 @@ impl Slices {
         }
         let steps = (places.len() - 1) as f64;
         let mean = (last - first) / steps;
-        let too_close = |pair: &[f64]| !((pair[1] - pair[0]) / mean > SAME_PLACE);
+        let too_close =
+            |pair: &[f64]| (pair[1] - pair[0]) / mean <= SAME_PLACE || pair.iter().any(|place| place.is_nan());
         if !(mean.is_finite() && mean > 0.0) || places.windows(2).any(too_close) {
             let at = places.windows(2).position(too_close).unwrap_or(0);
             return Err(refused("the slices are not in ascending order")

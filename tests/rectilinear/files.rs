@@ -25,6 +25,12 @@ fn written_and_read(places_mm: &[f64], spacing: SliceSpacing) -> pellucid::Resul
     read_spaced(&series, &SeriesChoice::Largest, spacing, None)
 }
 
+fn assert_range_mm(volume: &Volume, expected: [f64; 2]) {
+    let found = volume.slice_step_range_mm();
+    let apart = (0..2).map(|i| (found[i] - expected[i]).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-9, "found slices {found:?} mm apart, expected {expected:?}");
+}
+
 const PLACES_MM: [f64; 7] = [0.0, 1.0, 2.5, 4.5, 7.0, 10.0, 11.25];
 
 #[test]
@@ -34,11 +40,11 @@ fn a_series_comes_back_with_every_slice_at_its_place() {
     let found = &scan.volume;
     assert_eq!(found.grid().dims(), expected.grid().dims());
     assert_eq!(found.values_sha256(), expected.values_sha256());
-    for k in 0..PLACES_MM.len() {
-        let (at, place) = (found.voxel_mm([3, 2, k]), DVec3::new(1.5, 1.5, PLACES_MM[k]));
+    for (k, z) in PLACES_MM.into_iter().enumerate() {
+        let (at, place) = (found.voxel_mm([3, 2, k]), DVec3::new(1.5, 1.5, z));
         assert!((at - place).length() < 1e-9, "slice {k}: found {at}, expected {place}");
     }
-    assert_eq!(found.slice_step_range_mm().map(|mm| (1e6 * mm).round() / 1e6), [1.0, 3.0]);
+    assert_range_mm(found, [1.0, 3.0]);
     let facts: Vec<_> = scan.facts.iter().filter(|(label, _)| label == "slice spacing").collect();
     assert_eq!(facts[0].1, "1.0000 to 3.0000 mm along the normal, uneven");
 }
@@ -66,7 +72,7 @@ fn a_change_of_step_is_no_gap_and_a_gap_is_one() {
     // 5 mm through the base of the skull and 10 mm above is how heads were scanned.
     let planned = [0.0, 5.0, 10.0, 15.0, 25.0, 35.0, 45.0];
     let scan = written_and_read(&planned, SliceSpacing::Uneven).unwrap();
-    assert_eq!(scan.volume.slice_step_range_mm(), [5.0, 10.0]);
+    assert_range_mm(&scan.volume, [5.0, 10.0]);
     for (places_mm, missing) in [
         (&[0.0, 5.0, 10.0, 20.0, 25.0, 30.0][..], "slices are missing: 1 in 1 gaps"),
         (&[0.0, 1.0, 2.0, 5.0, 6.0, 7.0, 9.0], "slices are missing: 3 in 2 gaps"),

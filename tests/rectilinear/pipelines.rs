@@ -35,7 +35,7 @@ fn explain_says_how_far_apart_slices_are_and_that_nothing_is_skipped() {
         assert!(text.contains(part), "expected {part:?} in:\n{text}");
     }
     let Method::March(march) = &plan.method else { panic!("marching was asked for") };
-    assert_eq!(march.step_mm, 0.25, "half of the smallest distance");
+    assert!((march.step_mm - 0.25).abs() < 1e-12, "half of the smallest distance, found {}", march.step_mm);
 }
 
 #[test]
