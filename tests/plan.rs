@@ -9,6 +9,7 @@ use pellucid::volume::{Grid, Quantity};
 
 mod camera;
 mod demand;
+mod effects;
 mod explain;
 mod method;
 mod shapes;

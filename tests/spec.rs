@@ -6,6 +6,7 @@ use pellucid::spec::Spec;
 use pellucid::{Error, Fault};
 
 mod defaults;
+mod effects;
 mod mistakes;
 mod overrides;
 mod presets;

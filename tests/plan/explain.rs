@@ -24,6 +24,11 @@ fn a_plain_plan() {
       gradient              no effect asks for shading
       macrocells            the exact integrator skips cell by cell, by the values at their corners
       certificate           certify asks for no pixels
+      depth cue             the pipeline does not name it
+      shadows               the pipeline does not name it
+      scattering            the pipeline does not name it
+      fog                   the pipeline does not name it
+      haze                  the pipeline does not name it
     ");
 }
 
@@ -62,6 +67,11 @@ certify: 500
 
     not computed
       early ray termination termination_transmittance is 0, so that it costs no accuracy
+      depth cue             the pipeline does not name it
+      shadows               the pipeline does not name it
+      scattering            the pipeline does not name it
+      fog                   the pipeline does not name it
+      haze                  the pipeline does not name it
 
     warnings
       values from -1000 to 1800 go beyond the window -1024 to 1500 and look like its ends; normalise.hu widens it
