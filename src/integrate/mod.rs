@@ -1,8 +1,8 @@
 //! The volume rendering integral along each ray of a picture.
 //!
 //! [`render`] is all a caller needs. A kernel is chosen once per frame by type (voxels, transfer function, shading, or the
-//! atmosphere where a scene has effects of light); the
-//! choices of a [`Schedule`] change how long a picture takes, never the picture.
+//! atmosphere where a scene has effects of light); the choices of a [`Schedule`] change how long a picture takes, never the
+//! picture.
 
 mod atmosphere;
 mod chord;
