@@ -36,12 +36,21 @@ fn march(step_mm: f64) -> Method {
     Method::March(pellucid::plan::March { step_mm, rule: SampleRule::Midpoint, ..MARCH })
 }
 
-/// What the oracle, the exact integrator and a march make of the first pixel must be this, each within its tolerance.
-fn assert_everyone_sees(volume: &Volume, scene: &Scene, expected: [f64; 4], [step_mm, of_march]: [f64; 2], what: &str) {
+/// What the oracle, the exact integrator at a tolerance of 1e-6 and a march make of the first pixel must be this:
+/// `[error allowed of the first two, step of the march in mm, error allowed of it]`.
+fn assert_everyone_sees(
+    volume: &Volume,
+    scene: &Scene,
+    expected: [f64; 4],
+    [allowed, step_mm, of_march]: [f64; 3],
+    what: &str,
+) {
     let oracle = Oracle::new(volume, scene).pixel(0, 0);
     let exact = pixel(volume, scene, Method::Exact(pellucid::plan::Exact { tolerance: 1e-6 }));
     let marched = pixel(volume, scene, march(step_mm));
-    for (name, found, allowed) in [("oracle", oracle, 1e-6), ("exact", exact, 1.2e-6), ("march", marched, of_march)] {
+    for (name, found, allowed) in
+        [("oracle", oracle, allowed), ("exact", exact, allowed + 2e-7), ("march", marched, of_march)]
+    {
         let off = difference(found, expected);
         assert!(off <= allowed, "{what}, {name}: found {found:?}, expected {expected:?}, {off:e} apart");
     }

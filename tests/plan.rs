@@ -11,6 +11,7 @@ mod camera;
 mod clip;
 mod colors;
 mod demand;
+mod effects;
 mod explain;
 mod mask;
 mod method;

@@ -7,6 +7,7 @@ use pellucid::{Error, Fault};
 
 mod cuts;
 mod defaults;
+mod effects;
 mod mistakes;
 mod overrides;
 mod presets;

@@ -1,7 +1,8 @@
 //! The volume rendering integral along each ray of a picture.
 //!
-//! [`render`] is all a caller needs. A kernel is chosen once per frame by type (voxels, transfer function, shading); the
-//! choices of a [`Schedule`] change how long a picture takes, never the picture.
+//! [`render`] is all a caller needs. A kernel is chosen once per frame by type (voxels, transfer function, shading, or the
+//! atmosphere where a scene has effects of light); the choices of a [`Schedule`] change how long a picture takes, never the
+//! picture.
 
 mod atmosphere;
 mod chord;
@@ -40,7 +41,7 @@ pub struct Statistics {
     pub samples: u64,
     /// Largest bound on the error of a channel of a pixel (linear, premultiplied), where the method proves one.
     pub error_bound: Option<f64>,
-    /// Rays that met the volume.
+    /// Rays that met the volume, or haze.
     pub rays: u64,
     /// The kernel, such as `march/i16/tf2d/lit`.
     pub kernel: String,

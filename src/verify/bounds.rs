@@ -27,7 +27,7 @@ const TOLERANCES: [(&str, f64); 3] = [("1/255", 1.0 / 255.0), ("1e-3", 1e-3), ("
 /// # Errors
 /// `Fault::Limit` where memory for the phantom cannot be had.
 pub fn checks() -> Result<Vec<Check>> {
-    let volume = synthetic::head(&HeadPhantom { size: SIZE, ..HeadPhantom::default() })?;
+    let volume = head()?;
     let rays = rays::through(volume.grid(), RAYS, 1);
     let mut checks = Vec::new();
     for (scene_name, scene) in scenes(&volume)? {
@@ -47,6 +47,16 @@ pub fn checks() -> Result<Vec<Check>> {
         }
     }
     Ok(checks)
+}
+
+/// The phantom.
+pub(super) fn head() -> Result<Volume> {
+    synthetic::head(&HeadPhantom { size: SIZE, ..HeadPhantom::default() })
+}
+
+/// Its tissues by value alone.
+pub(super) fn head_scene(volume: &Volume) -> Result<Scene> {
+    scene(volume, false, None)
 }
 
 /// The worst of many rays.

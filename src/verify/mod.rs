@@ -15,7 +15,8 @@
 //! Orders say that an integrator converges, not to what; and a first-order rule hides a sample that is left out. So orders
 //! are measured against the [oracle](crate::oracle), [`bounds`] hold the exact integrator to the error it promises, and
 //! [`identities`] hold for any picture whatever its integrator. All checks take an integrator as a function, so that tests
-//! can hand them broken ones.
+//! can hand them broken ones. Where a definition itself is a model of something finer, what that costs is measured
+//! ([`occlusion`]).
 
 pub mod bounds;
 mod fit;
@@ -23,6 +24,7 @@ mod gauss;
 pub mod identities;
 pub mod lattices;
 mod manufactured;
+pub mod occlusion;
 pub mod pixels;
 mod rays;
 mod report;
@@ -74,5 +76,6 @@ pub fn verify() -> Result<Report> {
     }
     checks.extend(pixels::checks("exact/f64", &subjects::exact_enough)?);
     checks.extend(bounds::checks()?);
+    checks.extend(occlusion::checks()?);
     Ok(Report { checks })
 }

@@ -38,14 +38,21 @@ fn along_the_floor(strength: f64) -> Scene {
 #[test]
 fn a_slab_casts_its_shadow_on_the_floor() {
     // Up from the plane 1 the value falls from 100 to 0, rises to 200, stays, and falls to 0.
-    let (leave_floor, meet_slab) = (0.5 * 50.0 * 0.3 / 100.0, (0.5 * 100.0 * 0.3 + 0.5 * 25.0 * 0.2) / 200.0);
-    let transmittance = (-(leave_floor + meet_slab + 2.0 * 0.2 + meet_slab) as f64).exp();
+    let (leave_floor, meet_slab): (f64, f64) =
+        (0.5 * 50.0 * 0.3 / 100.0, (0.5 * 100.0 * 0.3 + 0.5 * 25.0 * 0.2) / 200.0);
+    let transmittance = (-(leave_floor + meet_slab + 2.0 * 0.2 + meet_slab)).exp();
     let opacity = 1.0 - (-0.3 * 7.0_f64).exp();
     for strength in [0.0, 0.5, 1.0] {
         let visibility = 1.0 - strength * (1.0 - transmittance);
         let seen = BLUE.map(|c| c * (0.125 + 0.75 * visibility) * opacity);
         let expected = [seen[0], seen[1], seen[2], opacity];
-        assert_everyone_sees(&floor_below_a_slab(), &along_the_floor(strength), expected, [0.25, 2e-6], "the floor");
+        assert_everyone_sees(
+            &floor_below_a_slab(),
+            &along_the_floor(strength),
+            expected,
+            [1e-6, 0.25, 2e-6],
+            "the floor",
+        );
     }
 }
 
@@ -64,7 +71,7 @@ fn an_axis_of_one_voxel_is_half_its_thickness_from_its_ends() {
     let opacity = 1.0 - (-0.4 * 7.0_f64).exp();
     let seen = BLUE.map(|c| c * (0.125 + 0.75 * 0.6 * visibility) * opacity);
     let expected = [seen[0], seen[1], seen[2], opacity];
-    assert_everyone_sees(&volume, &scene, expected, [0.25, 2e-6], "one slice");
+    assert_everyone_sees(&volume, &scene, expected, [1e-6, 0.25, 2e-6], "one slice");
 }
 
 #[test]

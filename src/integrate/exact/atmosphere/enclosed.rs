@@ -111,8 +111,11 @@ mod tests {
         (0..=64).map(off).fold(0.0, f64::max) / (enclosed.error + 1e-14)
     }
 
-    /// Random smooth factors of distance and a cubic, each with what it is.
-    fn random_case(seed: &mut u64) -> [(Enclosed, Box<dyn Fn(f64) -> f64>); 4] {
+    /// An enclosure, and what it encloses.
+    type Case = (Enclosed, Box<dyn Fn(f64) -> f64>);
+
+    /// Random smooth factors of distance, and a cubic.
+    fn random_case(seed: &mut u64) -> [Case; 4] {
         let near = 300.0 * random(seed);
         let length = 10f64.powf(3.0 * random(seed) - 1.5);
         let d = 10f64.powf(3.0 * random(seed) - 4.0);
