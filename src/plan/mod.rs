@@ -5,6 +5,7 @@
 //! what is not, and why. [`explain`] prints it. Nothing below this module reads a [`Spec`].
 
 mod camera;
+mod classification;
 mod explain;
 mod integrator;
 mod layers;
@@ -16,6 +17,7 @@ mod stages;
 mod volume_info;
 mod warnings;
 
+pub use classification::{Classification, CleanStep, Tissue};
 pub use explain::{explain, explain_json};
 pub use layers::Layer;
 pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};

@@ -10,6 +10,7 @@
 
 mod camera;
 mod check;
+mod clean;
 mod color;
 mod complaint;
 mod effects;
@@ -18,6 +19,7 @@ mod library;
 mod overrides;
 mod pipeline;
 mod preset;
+mod reference;
 mod schema;
 mod source;
 mod suggest;
@@ -26,6 +28,7 @@ mod typed;
 mod widget;
 
 pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
+pub use clean::CleanSpec;
 pub use color::Color;
 pub use effects::{EffectsSpec, LightSpec, ProjectSpec, ProjectionOf, ShadingSpec, SurfaceSpec};
 pub use integrate::{
@@ -38,6 +41,7 @@ pub use pipeline::{
     Series, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
+pub use reference::{LabelRange, ReferenceTissues};
 pub use schema::{pipeline_schema, preset_schema};
 pub use widget::{
     ContourSpec, EllipseSpec, EmissionSpec, GaussianSpec, PointSpec, RectangleSpec, TrapezoidSpec, TriangleSpec, Widget,

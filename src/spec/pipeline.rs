@@ -1,11 +1,12 @@
 //! A pipeline file: from a scan to a picture.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CameraSpec, Color, EffectsSpec, IntegrateSpec, Widget};
+use super::{CameraSpec, CleanSpec, Color, EffectsSpec, IntegrateSpec, Widget};
 
 /// A pipeline: which scan, what of it shows, from where, how exactly it is integrated, and the picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -27,6 +28,10 @@ pub struct Pipeline {
     #[schemars(length(min = 1))]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transfer_function: Vec<LayerSpec>,
+    /// How `classify` cleans its labels: lists of steps, by the name of a layer, or under `all` for those without a list of
+    /// their own. None by default; a picture has no labels and reads none of it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub clean: BTreeMap<String, Vec<CleanSpec>>,
     /// Effects beyond emission and absorption; none by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effects: Option<EffectsSpec>,

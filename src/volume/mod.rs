@@ -10,9 +10,11 @@
 
 mod digest;
 mod grid;
+mod label_map;
 mod samples;
 
 pub use grid::Grid;
+pub use label_map::{Concept, LabelMap, MOST_SEGMENTS, Segment};
 pub use samples::{Rescale, Samples};
 
 use crate::error::{Error, Fault, Result};

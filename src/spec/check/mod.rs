@@ -1,6 +1,7 @@
 //! What types cannot say: ranges, exactly one of several keys, and keys that nothing would read.
 
 mod camera;
+mod clean;
 mod pipeline;
 mod widget;
 

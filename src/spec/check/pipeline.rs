@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::camera::check_camera;
+use super::clean::check_clean;
 use super::widget::check_widgets;
 use super::{Check, join};
 use crate::error::Result;
@@ -29,6 +30,7 @@ pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> R
     for (i, layer) in pipeline.transfer_function.iter().enumerate() {
         check_layer(check, &format!("transfer_function.{i}"), layer)?;
     }
+    check_clean(check, &pipeline.clean)?;
     if let Some(effects) = &pipeline.effects {
         check_effects(check, effects)?;
     }
