@@ -15,7 +15,7 @@ use report::Report;
 /// Arguments of `pellucid info`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Info {
-    /// A folder of DICOM files, a DICOM file, or a .nrrd or .nhdr file
+    /// A folder of DICOM files, a DICOM file, or a .nrrd, .nhdr, .nii or .nii.gz file
     path: PathBuf,
 
     /// Series of a DICOM folder: its UID, number or description; the largest unless told
@@ -45,7 +45,7 @@ impl Info {
     fn folder(&self) -> Result<Option<Folder>> {
         match io::format_of(&self.path)? {
             io::Format::Dicom => scan_folder(&self.path).map(Some),
-            io::Format::Nrrd => Ok(None),
+            io::Format::Nrrd | io::Format::Nifti => Ok(None),
         }
     }
 }

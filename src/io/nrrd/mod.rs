@@ -19,6 +19,7 @@ mod lines;
 mod orientation;
 mod parse;
 mod read;
+pub mod segmentation;
 mod source;
 mod space;
 mod storage;
@@ -33,6 +34,7 @@ pub use encoding::{ElementType, Encoding, Endian};
 pub use header::{Axis, ByteSkip, Center, Header};
 pub use kind::Kind;
 pub use space::{Frame, Space};
+pub(in crate::io) use storage::samples as samples_of;
 pub use write::write;
 
 use crate::error::Result;
