@@ -1,6 +1,5 @@
 //! Label maps: which file format, and numbers of voxels to tissues.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::dicom::SeriesChoice;
@@ -81,7 +80,7 @@ pub fn read_labels(path: &Path) -> Result<LabelMap> {
 
 fn labels_of(volume: &Volume, described: &[segmentation::Described]) -> Result<LabelMap> {
     let (samples, rescale) = (volume.samples(), volume.rescale());
-    let mut positions: BTreeMap<u16, u8> = BTreeMap::new();
+    let mut present = vec![false; 1 << 16];
     for index in 0..samples.len() {
         let value = rescale.value(samples.stored(index));
         let is_label = value.fract() == 0.0 && (0.0..=65535.0).contains(&value);
@@ -92,19 +91,20 @@ fn labels_of(volume: &Volume, described: &[segmentation::Described]) -> Result<L
                 .found(value.to_string())
                 .expected("a whole number from 0 to 65535"));
         }
-        positions.insert(value as u16, 0);
+        present[value as usize] = true;
     }
     // Tissues without a voxel are tissues too.
-    positions.extend(described.iter().map(|segment| (segment.label, 0)));
-    positions.remove(&0);
-    if positions.len() > MOST_SEGMENTS {
+    described.iter().for_each(|segment| present[usize::from(segment.label)] = true);
+    let labels: Vec<u16> = (1..=u16::MAX).filter(|label| present[usize::from(*label)]).collect();
+    if labels.len() > MOST_SEGMENTS {
         return Err(Error::new(Fault::Unsupported, "a label map has at most 255 tissues")
-            .found(format!("{} different labels", positions.len())));
+            .found(format!("{} different labels", labels.len())));
     }
+    let mut positions = vec![0_u8; 1 << 16];
     let mut segments = Vec::new();
-    for (n, (label, position)) in positions.iter_mut().enumerate() {
+    for (n, label) in labels.iter().enumerate() {
         // At most 255.
-        *position = (n + 1) as u8;
+        positions[usize::from(*label)] = (n + 1) as u8;
         let described = described.iter().find(|segment| segment.label == *label);
         segments.push(Segment {
             name: described.map_or_else(|| label.to_string(), |segment| segment.name.clone()),
@@ -113,9 +113,6 @@ fn labels_of(volume: &Volume, described: &[segmentation::Described]) -> Result<L
             concept: described.and_then(|segment| segment.concept.clone()),
         });
     }
-    let voxel = |index: usize| {
-        let label = rescale.value(samples.stored(index)) as u16;
-        positions.get(&label).copied().unwrap_or(0)
-    };
+    let voxel = |index: usize| positions[rescale.value(samples.stored(index)) as usize];
     LabelMap::new(*volume.grid(), segments, (0..samples.len()).map(voxel).collect())
 }

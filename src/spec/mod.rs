@@ -49,7 +49,7 @@ pub use widget::{
 
 use std::path::{Component, Path, PathBuf};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Fault, Result};
 use crate::volume::{Quantity, Rescale, Volume};
 use source::Source;
 
@@ -91,6 +91,21 @@ impl Spec {
     /// As [`Spec::load`].
     pub fn from_text(text: &str, path: &Path, overrides: &[String]) -> Result<Self> {
         Self::from_source(Source::parse(text.to_owned(), path, overrides)?)
+    }
+
+    /// A pipeline of a scan and the names of presets, as a command line gives them; paths are relative to the working
+    /// directory.
+    ///
+    /// # Errors
+    /// As [`Spec::load`], and `Fault::Spec` for a path that is not Unicode.
+    pub fn of_presets(scan: &Path, presets: &[String], overrides: &[String]) -> Result<Self> {
+        let scan = scan
+            .to_str()
+            .ok_or_else(|| Error::new(Fault::Spec, "the path of the scan is not Unicode").found(format!("{scan:?}")))?;
+        // What is valid JSON is valid YAML, so that no character of a path or a name is more than itself.
+        let layers: Vec<_> = presets.iter().map(|name| serde_json::json!({ "preset": name })).collect();
+        let pipeline = serde_json::json!({ "version": 1, "volume": { "source": scan }, "transfer_function": layers });
+        Self::from_text(&pipeline.to_string(), Path::new("the command line"), overrides)
     }
 
     fn from_source(source: Source) -> Result<Self> {

@@ -57,7 +57,7 @@ pub struct Pipeline {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VolumeSpec {
-    /// A DICOM folder or a `.nrrd` or `.nhdr` file, relative to the pipeline's file.
+    /// A DICOM folder or a `.nrrd`, `.nhdr`, `.nii` or `.nii.gz` file, relative to the pipeline's file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<PathBuf>,
     /// A volume made by rule, in HU.
