@@ -139,7 +139,7 @@ mod tests {
         let cases = [([7, 6, 5], DVec3::new(0.5, 0.7, 3.0)), ([1, 9, 4], DVec3::ONE), ([40, 1, 1], DVec3::splat(0.3))];
         for (dims, spacing) in cases {
             for every in [2, 7, 23, usize::MAX] {
-                let inside = |index: usize| every != usize::MAX && index * 7919 % 101 % every == 0;
+                let inside = |index: usize| every != usize::MAX && (index * 7919 % 101).is_multiple_of(every);
                 let found = squared_distances_mm2(dims, spacing, inside);
                 let place = |index: usize| {
                     let [nx, ny, _] = dims;

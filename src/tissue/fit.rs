@@ -177,3 +177,41 @@ fn largest_run(numbers: &[f64]) -> (f64, [usize; 2]) {
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_rectangle_is_better() {
+        let mut state = 3_u64;
+        let mut next = |below: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % below
+        };
+        for case in 0..30 {
+            let mut bin = || {
+                let voxels = next(9);
+                Bin { voxels, of_tissue: next(voxels + 1) }
+            };
+            let rows: Vec<Vec<Bin>> = (0..5).map(|_| (0..6).map(|_| bin()).collect()).collect();
+            let of_tissue = rows.iter().flatten().map(|bin| bin.of_tissue).sum();
+            let table = Table { first_value: 0, rows, of_tissue, taken: Bin::default() };
+            let mut expected = 0.0_f64;
+            for (from, to) in (0..5).flat_map(|from| (from..5).map(move |to| (from, to))) {
+                for (low, high) in (0..6).flat_map(|low| (low..6).map(move |high| (low, high))) {
+                    let bin = table.within(Rectangle { value: [low, high], gradient: [from, to] });
+                    expected = expected.max(2.0 * bin.of_tissue as f64 / (bin.voxels + of_tissue) as f64);
+                }
+            }
+            let (_, found) = table.best(0.0);
+            assert!((found - expected).abs() < 1e-12, "case {case}: found {found}, expected {expected}");
+        }
+    }
+
+    #[test]
+    fn edges_are_half_way_up_at_the_ends() {
+        let proposal = Proposal { value: [90.0, 200.0], gradient_per_mm: (5.0, None), dice: 1.0 };
+        assert_eq!(proposal.trapezoid(), ([80.0, 100.0, 190.0, 210.0], [2.5, 7.5, 3000.0, 3000.0]));
+    }
+}

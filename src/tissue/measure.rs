@@ -142,6 +142,6 @@ mod tests {
         // Values -195, -175 and 265: mean -35, variance (160² + 140² + 300²) / 3.
         let (mean, sd) = (some.mean_hu.unwrap(), some.sd_hu.unwrap());
         assert!((mean + 35.0).abs() < 1e-9, "found a mean of {mean}, expected -35");
-        assert!((sd - 45066.666_666_666_f64.sqrt()).abs() < 1e-6, "found an SD of {sd}");
+        assert!((sd - (135_200.0_f64 / 3.0).sqrt()).abs() < 1e-6, "found an SD of {sd}");
     }
 }

@@ -41,6 +41,11 @@ fn complaint(root: &Value, schema: &Value, instance: &Value) -> Option<String> {
                     .iter()
                     .find_map(|(key, v)| complaint(root, value.get(key)?, v).map(|c| format!("{key}: {c}")));
             }
+            "additionalProperties" if value.is_object() => {
+                // A map: every key stands for itself.
+                let object = instance.as_object()?;
+                return object.iter().find_map(|(key, v)| complaint(root, value, v).map(|c| format!("{key}: {c}")));
+            }
             "additionalProperties" => {
                 assert_eq!(value, &json!(false));
                 let known = keywords.get("properties").and_then(Value::as_object).cloned().unwrap_or_else(Map::new);
@@ -106,6 +111,8 @@ fn mistakes_do_not() {
         ("integrate: exact", "integrate: precise"),
         ("integrate: exact", "integrate: { exact: { tolerance: null } }"),
         ("phantom: head", "phantom: 3"),
+        ("integrate: exact", "clean: { bone: [fill-hole] }"),
+        ("integrate: exact", "clean: { bone: [{ closing_mm: far }] }"),
     ] {
         let bad = good.replace(right, wrong);
         assert!(complaint(&schema, &schema, &yaml(&bad)).is_some(), "this satisfies the schema:\n{bad}");

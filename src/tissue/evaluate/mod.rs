@@ -91,3 +91,58 @@ fn agreement_of(
         mean_surface_distance_mm: distances.as_ref().map(SurfaceDistances::mean_mm),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Fault;
+    use crate::volume::{Grid, Segment};
+    use glam::DVec3;
+
+    /// A box of 4 x 4 x 4 voxels of 1 x 1 x 2 mm, moved along i.
+    fn labels(first: usize, origin_mm: f64) -> LabelMap {
+        let affine = glam::DAffine3::from_scale_rotation_translation(
+            DVec3::new(1.0, 1.0, 2.0),
+            glam::DQuat::IDENTITY,
+            DVec3::splat(origin_mm),
+        );
+        let grid = Grid::new([12, 6, 6], affine).unwrap();
+        let inside = |index: usize| {
+            let [i, j, k] = grid.unflatten(index);
+            (first..first + 4).contains(&i) && (1..5).contains(&j) && (1..5).contains(&k)
+        };
+        let voxels = (0..grid.voxel_count()).map(|index| u8::from(inside(index))).collect();
+        let segment = Segment { name: "box".into(), label: 1, color_srgb: [1.0; 3], concept: None };
+        LabelMap::new(grid, vec![segment], voxels).unwrap()
+    }
+
+    fn pair(reference: Vec<u8>) -> Vec<Pair> {
+        vec![Pair { tissue: "box".into(), label: 1, reference }]
+    }
+
+    #[test]
+    fn a_box_that_is_moved_by_a_quarter_agrees_by_three() {
+        let (a, b) = (labels(2, 0.0), labels(3, 0.0));
+        let comparison = Comparison::new(&a, &b, pair(vec![1])).unwrap();
+        let found = agreement(&comparison).unwrap().remove(0);
+        assert_eq!((found.dice, found.jaccard), (Some(0.75), Some(0.6)), "48 of 64 and 64 voxels are common");
+        assert_eq!((found.voxels, found.ml, found.difference_ml), (64, 0.128, 0.0));
+        assert_eq!(found.hausdorff_95_mm, Some(1.0), "no voxel is further away than the step");
+        let confusion = confusion(&comparison);
+        assert_eq!(confusion.voxels, [[48, 0, 16], [16, 0, 432 - 80]], "box and none; box, other, none");
+    }
+
+    #[test]
+    fn what_is_empty_has_no_distance() {
+        let (a, b) = (labels(2, 0.0), labels(2, 0.0));
+        let found = agreement(&Comparison::new(&a, &b, pair(vec![])).unwrap()).unwrap().remove(0);
+        assert_eq!((found.dice, found.hausdorff_95_mm, found.difference_percent), (Some(0.0), None, None));
+    }
+
+    #[test]
+    fn labels_of_another_place_are_refused() {
+        let (a, b) = (labels(2, 0.0), labels(2, 0.5));
+        let error = Comparison::new(&a, &b, pair(vec![1])).unwrap_err();
+        assert_eq!(error.fault(), Fault::Geometry, "{error}");
+    }
+}
