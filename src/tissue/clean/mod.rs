@@ -15,6 +15,9 @@ use crate::volume::{LabelMap, Volume};
 /// Each tissue is cleaned by itself, as a mask of `labels`, by its steps in their order; a tissue without steps is its mask.
 /// Where two masks then overlap, the tissue of greater peak extinction has the voxel; of equals, the first.
 ///
+/// It takes two bytes per voxel, and a closing nine more in a box around the tissue: beyond what [`classify`](super::classify)
+/// takes, and only here.
+///
 /// # Errors
 /// `Fault::Unsupported` for a closing on a lattice whose axes are not at right angles, and for the body of a volume whose
 /// values are not HU.
