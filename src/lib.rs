@@ -30,6 +30,7 @@ pub mod oracle;
 pub mod plan;
 
 pub mod integrate;
+pub mod tissue;
 
 pub mod pipeline;
 pub mod verify;

@@ -13,7 +13,7 @@ const LAYERS: [&[&str]; 6] = [
     &["volume", "transfer", "image", "scene"],
     &["field", "classify", "spec", "io", "synthetic"],
     &["plan", "oracle"],
-    &["integrate"],
+    &["integrate", "tissue"],
     &["pipeline", "verify"],
 ];
 
@@ -25,8 +25,10 @@ const ONLY: [(&str, &[&str], &str); 1] = [(
 )];
 
 /// Uses that the layers allow and a rule forbids: `(user, used, why)`.
-const NEVER: [(&str, &str, &str); 1] =
-    [("integrate", "spec", "what may be written is resolved by the plan before the first ray")];
+const NEVER: [(&str, &str, &str); 2] = [
+    ("integrate", "spec", "what may be written is resolved by the plan before the first ray"),
+    ("tissue", "spec", "what may be written is resolved by the plan before the first voxel"),
+];
 
 /// Uses that the layers forbid and are right all the same: `(user, used, why)`.
 const EXCEPTIONS: [(&str, &str, &str); 3] = [

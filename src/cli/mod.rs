@@ -3,7 +3,9 @@
 //! stdout is the result and nothing else; logs, progress and summaries are on stderr. Exit codes follow from
 //! [`pellucid::Fault`]; 2 is clap's, for a command line that cannot be read.
 
+mod classify;
 mod completions;
+mod evaluate;
 mod explain;
 mod histogram;
 mod info;
@@ -15,6 +17,7 @@ pub(crate) mod report;
 mod schema;
 mod stderr;
 mod stdout;
+mod table;
 mod verify;
 
 use std::path::PathBuf;
@@ -56,6 +59,10 @@ enum Command {
     Render(render::Render),
     /// Print what a pipeline would do, what it would not, and why
     Explain(explain::Explain),
+    /// Label the tissues of a scan by the presets that picture them, and measure them
+    Classify(classify::Classify),
+    /// Compare labels with a reference: overlap, distances, and what was possible
+    Evaluate(evaluate::Evaluate),
     /// Print what is in a scan: series, geometry, values, and what became of each file
     Info(info::Info),
     /// Write a synthetic CT scan whose every value is known by formula
@@ -120,6 +127,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     match command {
         Command::Render(command) => command.run(global),
         Command::Explain(command) => command.run(),
+        Command::Classify(command) => command.run(global),
+        Command::Evaluate(command) => command.run(global),
         Command::Info(command) => command.run(),
         Command::Phantom(command) => command.run(),
         Command::Presets(command) => command.run(),

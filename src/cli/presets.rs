@@ -1,6 +1,12 @@
 //! `pellucid presets`: the transfer functions that come with pellucid.
 
-use pellucid::spec::{BUILT_IN_PRESETS, built_in_preset};
+use std::path::PathBuf;
+
+use pellucid::io::dicom::SeriesChoice;
+use pellucid::io::{load, read_labels};
+use pellucid::pipeline;
+use pellucid::spec::{BUILT_IN_PRESETS, ReferenceTissues, built_in_preset};
+use pellucid::tissue::{fit, mask_of};
 use pellucid::{Error, Fault, Result};
 
 use super::stdout;
@@ -21,6 +27,25 @@ enum Action {
         /// Its name
         name: String,
     },
+    /// Propose widgets for a tissue from a scan whose labels are known
+    Fit(Fit),
+}
+
+#[derive(Debug, clap::Args)]
+struct Fit {
+    /// The scan
+    scan: PathBuf,
+
+    /// Its labels: .seg.nrrd, .nrrd, .nii or .nii.gz
+    labels: PathBuf,
+
+    /// Which tissue of the labels, by name; a number where they have no names
+    #[arg(long, value_name = "NAME")]
+    tissue: String,
+
+    /// Which labels make up which tissue, a YAML file as for `evaluate`
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
 }
 
 impl Presets {
@@ -29,7 +54,34 @@ impl Presets {
         match &self.action {
             Action::List => stdout::print(&list()?),
             Action::Show { name } => stdout::print(text(name)?),
+            Action::Fit(fit) => stdout::print(&fit.proposal()?),
         }
+    }
+}
+
+impl Fit {
+    /// A preset to begin from: its shapes are what labels and scan say, its opacity and colour are anyone's.
+    fn proposal(&self) -> Result<String> {
+        let labels = read_labels(&self.labels)?;
+        let positions = match &self.map {
+            Some(path) => pipeline::positions(&labels, &ReferenceTissues::load(path)?, &self.tissue)?,
+            None => labels.position_of(&self.tissue).into_iter().collect(),
+        };
+        let volume = load(&self.scan, &SeriesChoice::Largest, None)?.volume;
+        let proposals = fit(&volume, &mask_of(&labels, &positions)).map_err(|error| error.element(&self.tissue))?;
+        let dice: Vec<String> = proposals.iter().map(|proposal| format!("{:.3}", proposal.dice)).collect();
+        let mut text = format!(
+            "# Proposed from labels; Dice on that scan, widget by widget: {}. Opacity and colour are yours to choose.\n\
+             version: 1\nname: {}\nwidgets:\n",
+            dice.join(", "),
+            serde_json::json!(self.tissue),
+        );
+        for proposal in &proposals {
+            let (hu, gradient) = proposal.trapezoid();
+            text.push_str(&format!("  - trapezoid: {{ hu: {hu:?}, gradient_hu_per_mm: {gradient:?} }}\n"));
+            text.push_str("    opacity_per_mm: 0.3\n    color: \"#cccccc\"\n");
+        }
+        Ok(text)
     }
 }
 

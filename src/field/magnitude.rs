@@ -17,6 +17,18 @@ pub fn gradient_magnitude_per_mm<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, 
     magnitude
 }
 
+/// The gradient magnitude along the row `(j, k)` of voxels, HU/mm: for those who need few rows at a time. Panics if `row` is
+/// not as long as a row of the field.
+pub fn gradient_magnitude_row<V: Voxel, K: Spacing>(
+    field: &Trilinear<'_, V, K>,
+    units: &GradientUnits,
+    [j, k]: [usize; 2],
+    row: &mut [f32],
+) {
+    assert_eq!(row.len(), field.dims[0], "voxels in a row");
+    fill_row(field, units, j, k, row);
+}
+
 fn fill_row<V: Voxel, K: Spacing>(
     field: &Trilinear<'_, V, K>,
     units: &GradientUnits,

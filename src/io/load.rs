@@ -5,16 +5,14 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::dicom::{self, SeriesChoice, SliceSpacing};
-use super::{Scan, nrrd};
+use super::{Scan, nifti, nrrd};
 use crate::error::{Error, Fault, Result};
 
 /// What a path may name, as messages say it.
-const SUPPORTED: &str = "a folder of DICOM files, a DICOM file, or a .nrrd or .nhdr file";
+const SUPPORTED: &str = "a folder of DICOM files, a DICOM file, or a .nrrd, .nhdr, .nii or .nii.gz file";
 
 /// Formats that others write volumes in and that are not read here, by suffix.
-const UNSUPPORTED: [(&str, &str); 8] = [
-    ("nii", "NIfTI"),
-    ("nii.gz", "NIfTI"),
+const UNSUPPORTED: [(&str, &str); 6] = [
     ("mha", "MetaImage"),
     ("mhd", "MetaImage"),
     ("vti", "VTK image data"),
@@ -23,8 +21,8 @@ const UNSUPPORTED: [(&str, &str); 8] = [
     ("raw", "samples without a header"),
 ];
 
-/// Reads a scan: a folder or file of DICOM, or NRRD. `series` matters for DICOM only. `max_bytes` is the most memory that
-/// reading may take; it is checked before anything is allocated for samples.
+/// Reads a scan: a folder or file of DICOM, NRRD or NIfTI. `series` matters for DICOM only. `max_bytes` is the most memory
+/// that reading may take; it is checked before anything is allocated for samples.
 ///
 /// # Errors
 /// `Fault::Input` for a path that is missing or unreadable, `Fault::Unsupported` for a format that is not read here, and
@@ -41,6 +39,7 @@ pub fn load_spaced(path: &Path, series: &SeriesChoice, spacing: SliceSpacing, ma
     match format_of(path)? {
         Format::Dicom => dicom::read_spaced(path, series, spacing, max_bytes),
         Format::Nrrd => nrrd::read_within(path, max_bytes),
+        Format::Nifti => nifti::read(path, max_bytes),
     }
 }
 
@@ -51,6 +50,8 @@ pub enum Format {
     Dicom,
     /// NRRD, attached or detached.
     Nrrd,
+    /// NIfTI-1.
+    Nifti,
 }
 
 /// The format of what lies at `path`: by its suffix, and by its first bytes where the suffix says nothing.
@@ -68,6 +69,9 @@ pub fn format_of(path: &Path) -> Result<Format> {
     let has_suffix = |suffix: &str| name.strip_suffix(suffix).is_some_and(|stem| stem.ends_with('.'));
     if ["nrrd", "nhdr"].into_iter().any(has_suffix) {
         return Ok(Format::Nrrd);
+    }
+    if ["nii", "nii.gz"].into_iter().any(has_suffix) {
+        return Ok(Format::Nifti);
     }
     if has_suffix("dcm") {
         return Ok(Format::Dicom);

@@ -1,15 +1,18 @@
-//! Files: CT scans in, scans and pictures out.
+//! Files: CT scans in, scans, label maps and pictures out.
 //!
 //! Readers refuse what they would have to guess, and say what became of every file they were shown.
 
 pub mod dicom;
 pub mod exr;
+mod label_map;
 pub mod labels;
 mod load;
+pub mod nifti;
 pub mod nrrd;
 pub mod png;
 pub mod whole_file;
 
+pub use label_map::{LabelFormat, read_labels, write_labels};
 pub use labels::Labels;
 pub use load::{Format, format_of, load, load_spaced};
 

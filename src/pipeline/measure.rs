@@ -45,7 +45,7 @@ impl<'a> Stopwatch<'a> {
 }
 
 /// Most bytes of memory that the process has held so far, `None` where the system does not say (it does on Linux).
-pub(super) fn peak_memory_bytes() -> Option<u64> {
+pub fn peak_memory_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let kibibytes = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     kibibytes.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib * 1024)

@@ -1,9 +1,12 @@
-//! From a spec to a picture: load, plan, clip, integrate, encode, and a sidecar that says how it was made.
+//! From a spec to a picture: load, plan, clip, integrate, encode, and a sidecar that says how it was made. And from a spec to
+//! labels: load, plan, classify, clean, measure, write.
 
 mod analytic;
 mod certify;
 mod clip;
+mod compare;
 mod digest;
+mod label;
 mod load;
 mod mask;
 mod measure;
@@ -23,8 +26,10 @@ use crate::spec::Spec;
 
 pub use certify::Certificate;
 pub use clip::Clipped;
+pub use compare::{pairs, positions};
+pub use label::{LabelOptions, Labelled, classify};
 pub use load::load;
-pub use measure::StageTime;
+pub use measure::{StageTime, peak_memory_bytes};
 pub use sidecar::Sidecar;
 pub use stack::{StackOutcome, StackSidecar, composite};
 

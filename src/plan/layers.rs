@@ -105,6 +105,20 @@ pub(super) fn layer(
     Ok(Layer { name, tissue: preset.and_then(|p| p.tissue.clone()), terms, max_deviation })
 }
 
+/// The terms of shapes without optics: their extinction is 1 where a shape is 1.
+pub(super) fn shapes(widgets: &[Widget], layer: &LayerSpec, gradient_range_per_mm: f64) -> Result<Vec<Term>> {
+    let unit = Optics { extinction_per_mm: 1.0, emission_per_mm: [0.0; 3] };
+    let mut terms = Vec::new();
+    for (k, widget) in widgets.iter().enumerate() {
+        let Some((shape, max_deviation)) = shape(widget) else { continue };
+        let expansion = shape.expand(unit, max_deviation.unwrap_or(DEFAULT_DEVIATION));
+        for term in expansion.map_err(|error| error.element(format!("classify.{k}")))?.terms {
+            terms.extend(placed(term, layer, Scales::NONE).and_then(|term| simplified(term, gradient_range_per_mm))?);
+        }
+    }
+    Ok(terms)
+}
+
 /// What is in HU means nothing on values of unknown meaning, unless the layer says how the two relate.
 fn refuse_hu_for_other_values(
     spec: &Spec,

@@ -26,6 +26,11 @@ pub(super) struct Scales {
     pub(super) emission: f64,
 }
 
+impl Scales {
+    /// As written.
+    pub(super) const NONE: Scales = Scales { extinction: 1.0, emission: 1.0 };
+}
+
 pub(super) fn resolve(spec: &Spec) -> ResolvedLight {
     let effects = spec.pipeline.effects.clone().unwrap_or_default();
     let transport = effects.light.unwrap_or(TransportName::Both);
@@ -33,7 +38,7 @@ pub(super) fn resolve(spec: &Spec) -> ResolvedLight {
         // The optical depth is of extinction.
         (TransportName::Absorption, _) | (_, Some(_)) => Scales { extinction: 1.0, emission: 0.0 },
         (TransportName::Emission, None) => Scales { extinction: 0.0, emission: 1.0 },
-        (TransportName::Both, None) => Scales { extinction: 1.0, emission: 1.0 },
+        (TransportName::Both, None) => Scales::NONE,
     };
     let written = effects.shading.as_ref().map(|written| {
         let shading = shading(written);

@@ -5,6 +5,7 @@
 //! what is not, and why. [`explain`] prints it. Nothing below this module reads a [`Spec`].
 
 mod camera;
+mod classification;
 mod clip;
 mod colors;
 mod effects;
@@ -22,6 +23,7 @@ mod volume_info;
 mod voxels;
 mod warnings;
 
+pub use classification::{Classification, CleanStep, Tissue};
 use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
 pub use layers::Layer;

@@ -11,6 +11,7 @@
 mod analytic;
 mod camera;
 mod check;
+mod clean;
 mod color;
 mod complaint;
 mod effects;
@@ -20,6 +21,7 @@ mod overrides;
 mod per_axis;
 mod pipeline;
 mod preset;
+mod reference;
 mod schema;
 mod source;
 mod stack;
@@ -30,6 +32,7 @@ mod widget;
 
 pub use analytic::{AnalyticSpec, FieldSpec, MarschnerLobbSpec, RampSpec, SphereSpec, TorusSpec};
 pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
+pub use clean::CleanSpec;
 pub use color::Color;
 pub use effects::{
     ClassifyAtName, ClipBoxSpec, ClipPlaneSpec, ClipSpec, DepthCueSpec, EffectsSpec, ExpFogSpec, FogSpec, HazeSpec,
@@ -47,6 +50,7 @@ pub use pipeline::{
     PhantomHead, PhantomRings, PhantomSpec, Pipeline, Series, SlicesName, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
+pub use reference::{LabelRange, ReferenceTissues};
 pub use schema::{pipeline_schema, preset_schema, stack_schema};
 pub use stack::{AlphaName, Document, Stack, StackImageSpec, StackSpec};
 pub use widget::{
@@ -56,7 +60,7 @@ pub use widget::{
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Fault, Result};
 use crate::volume::{ColorEncoding, Quantity, Rescale, RgbaEncoding, Volume};
 use source::Source;
 
@@ -104,6 +108,21 @@ impl Spec {
     /// As [`Spec::load`].
     pub fn from_text(text: &str, path: &Path, overrides: &[String]) -> Result<Self> {
         Self::from_source(Source::parse(text.to_owned(), path, overrides)?)
+    }
+
+    /// A pipeline of a scan and the names of presets, as a command line gives them; paths are relative to the working
+    /// directory.
+    ///
+    /// # Errors
+    /// As [`Spec::load`], and `Fault::Spec` for a path that is not Unicode.
+    pub fn of_presets(scan: &Path, presets: &[String], overrides: &[String]) -> Result<Self> {
+        let scan = scan
+            .to_str()
+            .ok_or_else(|| Error::new(Fault::Spec, "the path of the scan is not Unicode").found(format!("{scan:?}")))?;
+        // What is valid JSON is valid YAML, so that no character of a path or a name is more than itself.
+        let layers: Vec<_> = presets.iter().map(|name| serde_json::json!({ "preset": name })).collect();
+        let pipeline = serde_json::json!({ "version": 1, "volume": { "source": scan }, "transfer_function": layers });
+        Self::from_text(&pipeline.to_string(), Path::new("the command line"), overrides)
     }
 
     fn from_source(source: Source) -> Result<Self> {

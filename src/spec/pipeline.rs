@@ -1,11 +1,12 @@
 //! A pipeline file: from a scan to a picture.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AnalyticSpec, CameraSpec, Color, EffectsSpec, IntegrateSpec, Widget};
+use super::{AnalyticSpec, CameraSpec, CleanSpec, Color, EffectsSpec, IntegrateSpec, Widget};
 
 /// A pipeline: which scan, what of it shows, from where, how exactly it is integrated, and the picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,6 +29,10 @@ pub struct Pipeline {
     #[schemars(length(min = 1))]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transfer_function: Vec<LayerSpec>,
+    /// How `classify` cleans its labels: lists of steps, by the name of a layer, or under `all` for those without a list of
+    /// their own. None by default; a picture has no labels and reads none of it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub clean: BTreeMap<String, Vec<CleanSpec>>,
     /// Effects beyond emission and absorption; none by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effects: Option<EffectsSpec>,
@@ -53,7 +58,7 @@ pub struct Pipeline {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VolumeSpec {
-    /// A DICOM folder or a `.nrrd` or `.nhdr` file, relative to the pipeline's file.
+    /// A DICOM folder or a `.nrrd`, `.nhdr`, `.nii` or `.nii.gz` file, relative to the pipeline's file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<PathBuf>,
     /// A volume made by rule, in HU.

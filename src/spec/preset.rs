@@ -27,6 +27,10 @@ pub struct Preset {
     /// Its widgets, which add up.
     #[schemars(length(min = 1))]
     pub widgets: Vec<Widget>,
+    /// Widgets for label maps in place of those of the picture, where the two want different ones: shapes without optics.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1))]
+    pub classify: Option<Vec<Widget>>,
 }
 
 /// A tissue, for label maps.
@@ -39,4 +43,7 @@ pub struct Tissue {
     /// SNOMED CT concept identifier, in quotes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub snomed: Option<String>,
+    /// What that concept is, in words; the name of the preset by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub meaning: Option<String>,
 }

@@ -74,6 +74,11 @@ impl Grid {
         DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length())
     }
 
+    /// Volume in mm³ that a voxel stands for.
+    pub fn voxel_mm3(&self) -> f64 {
+        self.index_to_lps_mm.matrix3.determinant().abs()
+    }
+
     /// The map of a gradient per index step to a gradient per mm: the inverse transpose of the affine's matrix, so that
     /// the gradient stays a covector under rotation, anisotropic spacing, shear and reflection.
     pub fn gradient_to_per_mm(&self) -> DMat3 {

@@ -18,12 +18,14 @@
 mod classes;
 mod digest;
 mod grid;
+mod label_map;
 mod rgba;
 mod samples;
 mod slices;
 
 pub use classes::Classes;
 pub use grid::Grid;
+pub use label_map::{Concept, LabelMap, MOST_SEGMENTS, Segment};
 pub use rgba::{ColorEncoding, RgbaEncoding};
 pub use samples::{Rescale, Samples};
 pub use slices::Slices;

@@ -56,7 +56,7 @@ fn a_file_that_is_no_scan_is_4() {
 #[test]
 fn a_format_that_is_not_read_is_5() {
     let folder = Folder::new("unsupported");
-    pellucid(&["info", &folder.write("brain.nii", "n+1")]).failure(5).says(&["NIfTI", "remedy: "]);
+    pellucid(&["info", &folder.write("brain.mha", "ObjectType = Image")]).failure(5).says(&["MetaImage", "remedy: "]);
 }
 
 #[test]

@@ -41,6 +41,11 @@ fn complaint(root: &Value, schema: &Value, instance: &Value) -> Option<String> {
                     .iter()
                     .find_map(|(key, v)| complaint(root, value.get(key)?, v).map(|c| format!("{key}: {c}")));
             }
+            "additionalProperties" if value.is_object() => {
+                // A map: every key stands for itself.
+                let object = instance.as_object()?;
+                return object.iter().find_map(|(key, v)| complaint(root, value, v).map(|c| format!("{key}: {c}")));
+            }
             "additionalProperties" => {
                 let known = keywords.get("properties").and_then(Value::as_object).cloned().unwrap_or_else(Map::new);
                 let mut others = instance.as_object()?.iter().filter(|(key, _)| !known.contains_key(*key));
@@ -110,6 +115,8 @@ fn mistakes_do_not() {
         ("integrate: exact", "effects: { mask: { source: a.nrrd, labels: { 1: hidden } } }"),
         ("integrate: exact", "effects: { mask: { source: a.nrrd, labels: { 1: { presett: bone } } } }"),
         ("integrate: exact", "effects: { clip: { box: { mm: [open, closed, open] } } }"),
+        ("integrate: exact", "clean: { bone: [fill-hole] }"),
+        ("integrate: exact", "clean: { bone: [{ closing_mm: far }] }"),
     ] {
         let bad = good.replace(right, wrong);
         assert!(complaint(&schema, &schema, &yaml(&bad)).is_some(), "this satisfies the schema:\n{bad}");

@@ -17,7 +17,7 @@ use report::Report;
 /// Arguments of `pellucid info`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Info {
-    /// A folder of DICOM files, a DICOM file, a .nrrd or .nhdr file, or a pipeline, whose volume is meant
+    /// A folder of DICOM files, a DICOM file, a .nrrd, .nhdr, .nii or .nii.gz file, or a pipeline, whose volume is meant
     path: PathBuf,
 
     /// Series of a DICOM folder: its UID, number or description; the largest unless told
@@ -59,7 +59,7 @@ impl Info {
         }
         match io::format_of(&self.path)? {
             io::Format::Dicom => scan_folder(&self.path).map(Some),
-            io::Format::Nrrd => Ok(None),
+            io::Format::Nrrd | io::Format::Nifti => Ok(None),
         }
     }
 }

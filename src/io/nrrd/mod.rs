@@ -20,6 +20,7 @@ mod orientation;
 mod parse;
 mod read;
 mod rgba;
+pub mod segmentation;
 mod source;
 mod space;
 mod storage;
@@ -34,6 +35,7 @@ pub use encoding::{ElementType, Encoding, Endian};
 pub use header::{Axis, ByteSkip, Center, Header};
 pub use kind::Kind;
 pub use space::{Frame, Space};
+pub(in crate::io) use storage::samples as samples_of;
 pub use write::write;
 
 use crate::error::Result;

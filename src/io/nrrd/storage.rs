@@ -14,7 +14,7 @@ const F64_INTEGERS: i128 = 1 << 53;
 /// # Errors
 /// `Fault::Input` if no element is a finite number, `Fault::Unsupported` for numbers beyond 32-bit floats. The caller
 /// names the file.
-pub(super) fn samples(elements: Elements, warnings: &mut Vec<String>) -> Result<(Samples, Rescale)> {
+pub(in crate::io) fn samples(elements: Elements, warnings: &mut Vec<String>) -> Result<(Samples, Rescale)> {
     let exact = |data| Ok((Samples::I16(data), Rescale::IDENTITY));
     match elements {
         Elements::I16(values) => exact(values),

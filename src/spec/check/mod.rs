@@ -2,6 +2,7 @@
 
 mod analytic;
 mod camera;
+mod clean;
 mod clip;
 mod effects;
 mod light;

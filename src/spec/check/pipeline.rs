@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::analytic::check_analytic;
 use super::camera::check_camera;
+use super::clean::check_clean;
 use super::effects::{check_effects, check_what_shows};
 use super::light::check_emission;
 use super::mask::check_mask;
@@ -34,6 +35,7 @@ pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> R
     for (i, layer) in pipeline.transfer_function.iter().enumerate() {
         check_layer(check, &format!("transfer_function.{i}"), layer)?;
     }
+    check_clean(check, &pipeline.clean)?;
     if let Some(effects) = &pipeline.effects {
         check_effects(check, effects)?;
         if let Some(mask) = &effects.mask {

@@ -12,7 +12,49 @@ pub(in crate::spec) fn check_preset(source: &Source, preset: &Preset, name: &str
     check.require("name", preset.name == name, &format!("{name}, as its file is named"))?;
     let label = preset.tissue.as_ref().map(|tissue| f64::from(tissue.label));
     check.at_least("tissue.label", label, 1.0)?;
-    check_widgets(check, "widgets", &preset.widgets)
+    let concept = preset.tissue.as_ref().and_then(|tissue| tissue.snomed.as_deref());
+    let digits = concept.is_none_or(|code| (6..=18).contains(&code.len()) && code.bytes().all(|b| b.is_ascii_digit()));
+    check.require("tissue.snomed", digits, "a SNOMED CT identifier, 6 to 18 digits in quotes")?;
+    let meaning = preset.tissue.as_ref().is_some_and(|tissue| tissue.meaning.is_some());
+    check.unread("tissue.meaning", meaning && concept.is_none(), "it says what tissue.snomed is")?;
+    check_widgets(check, "widgets", &preset.widgets)?;
+    match &preset.classify {
+        Some(widgets) => check_classifiers(check, "classify", widgets),
+        None => Ok(()),
+    }
+}
+
+/// Widgets of a label: shapes and nothing else, since a label has no look.
+fn check_classifiers(check: Check<'_>, path: &str, widgets: &[Widget]) -> Result<()> {
+    check.require(path, !widgets.is_empty(), "at least one widget")?;
+    for (i, widget) in widgets.iter().enumerate() {
+        let path = format!("{path}.{i}");
+        let shape = check.exactly_one(&path, &shapes(widget)[..6])?;
+        check_shape(check, &join(&path, shape), widget)?;
+        let unread = [
+            ("points", widget.points.is_some()),
+            ("gradient_weight", widget.gradient_weight.is_some()),
+            ("opacity_per_mm", widget.opacity_per_mm.is_some()),
+            ("extinction_per_mm", widget.extinction_per_mm.is_some()),
+            ("color", widget.color.is_some()),
+            ("emission_per_mm", widget.emission_per_mm.is_some()),
+        ];
+        unread.iter().try_for_each(|(key, given)| check.unread(&join(&path, key), *given, "a label has no look"))?;
+    }
+    Ok(())
+}
+
+/// Every shape, and whether the widget has it; `points`, which carries its own optics, is the last.
+fn shapes(widget: &Widget) -> [(&'static str, bool); 7] {
+    [
+        ("rectangle", widget.rectangle.is_some()),
+        ("trapezoid", widget.trapezoid.is_some()),
+        ("triangle", widget.triangle.is_some()),
+        ("contour", widget.contour.is_some()),
+        ("ellipse", widget.ellipse.is_some()),
+        ("gaussian", widget.gaussian.is_some()),
+        ("points", widget.points.is_some()),
+    ]
 }
 
 pub(super) fn check_widgets(check: Check<'_>, path: &str, widgets: &[Widget]) -> Result<()> {
@@ -21,16 +63,7 @@ pub(super) fn check_widgets(check: Check<'_>, path: &str, widgets: &[Widget]) ->
 }
 
 fn check_widget(check: Check<'_>, path: &str, widget: &Widget) -> Result<()> {
-    let shapes = [
-        ("rectangle", widget.rectangle.is_some()),
-        ("trapezoid", widget.trapezoid.is_some()),
-        ("triangle", widget.triangle.is_some()),
-        ("contour", widget.contour.is_some()),
-        ("ellipse", widget.ellipse.is_some()),
-        ("gaussian", widget.gaussian.is_some()),
-        ("points", widget.points.is_some()),
-    ];
-    let shape = check.exactly_one(path, &shapes)?;
+    let shape = check.exactly_one(path, &shapes(widget))?;
     check_shape(check, &join(path, shape), widget)?;
     match &widget.points {
         Some(points) => check_points(check, path, widget, points),
