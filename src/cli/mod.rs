@@ -3,6 +3,7 @@
 //! stdout is the result and nothing else; logs, progress and summaries are on stderr. Exit codes follow from
 //! [`pellucid::Fault`]; 2 is clap's, for a command line that cannot be read.
 
+mod compare;
 mod completions;
 mod explain;
 mod histogram;
@@ -62,6 +63,8 @@ enum Command {
     Presets(presets::Presets),
     /// Print the JSON Schema of pipelines or presets, for editors
     Schema(schema::Schema),
+    /// Compare two pictures, each a file or what a pipeline renders
+    Compare(compare::Compare),
     /// Verify the integrators: orders of convergence, errors against the truth, identities
     Verify(verify::Verify),
     /// Print a completion script for a shell
@@ -113,6 +116,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         Command::Phantom(command) => command.run(),
         Command::Presets(command) => command.run(),
         Command::Schema(command) => command.run(),
+        Command::Compare(command) => command.run(global),
         Command::Verify(command) => command.run(),
         Command::Completions(command) => command.run(),
     }

@@ -1,6 +1,9 @@
 //! Pictures: linear, premultiplied RGBA in f32 until they are encoded.
 
+mod color_space;
+pub mod figure;
 pub mod metrics;
+mod plane;
 pub mod srgb;
 
 /// A picture in memory: linear RGB premultiplied by alpha, f32, row by row from the top left.

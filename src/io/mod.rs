@@ -6,6 +6,7 @@ pub mod dicom;
 pub mod exr;
 mod load;
 pub mod nrrd;
+pub mod picture;
 pub mod png;
 pub mod whole_file;
 

@@ -82,6 +82,16 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
     Ok(Outcome { picture: plan.output.path, sidecar_path, sidecar })
 }
 
+/// Renders a pipeline and writes nothing.
+///
+/// # Errors
+/// Those of each stage.
+pub fn picture(spec: &Spec, progress: Progress<'_>) -> Result<Rendered> {
+    let scan = load(spec)?;
+    let plan = plan(spec, &scan, &Options::default())?;
+    integrate(&scan, &plan, progress)
+}
+
 /// The plan for a scan, with its picture where the caller wants it.
 ///
 /// # Errors
