@@ -31,6 +31,7 @@ pub mod plan;
 
 pub mod integrate;
 
+pub mod interchange;
 pub mod pipeline;
 pub mod verify;
 

@@ -6,6 +6,7 @@
 mod compare;
 mod completions;
 mod explain;
+mod export_vtk;
 mod histogram;
 mod info;
 mod phantom;
@@ -65,6 +66,8 @@ enum Command {
     Schema(schema::Schema),
     /// Compare two pictures, each a file or what a pipeline renders
     Compare(compare::Compare),
+    /// Write a Python script that renders a pipeline's scene with VTK
+    ExportVtk(export_vtk::ExportVtk),
     /// Verify the integrators: orders of convergence, errors against the truth, identities
     Verify(verify::Verify),
     /// Print a completion script for a shell
@@ -117,6 +120,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         Command::Presets(command) => command.run(),
         Command::Schema(command) => command.run(),
         Command::Compare(command) => command.run(global),
+        Command::ExportVtk(command) => command.run(),
         Command::Verify(command) => command.run(),
         Command::Completions(command) => command.run(),
     }

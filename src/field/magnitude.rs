@@ -3,6 +3,8 @@
 use rayon::prelude::*;
 
 use super::{GradientUnits, Trilinear, Voxel};
+use crate::error::Result;
+use crate::volume::{Samples, Volume};
 
 /// The gradient magnitude at every voxel, HU/mm, x fastest: 4 bytes per voxel, computed in parallel. Only 2D transfer
 /// functions read it.
@@ -15,6 +17,28 @@ pub fn gradient_magnitude_per_mm<V: Voxel>(field: &Trilinear<'_, V>, units: &Gra
         }
     });
     magnitude
+}
+
+/// The gradient magnitude at every voxel of a volume, HU/mm, x fastest.
+///
+/// # Errors
+/// As [`Trilinear::new`].
+pub fn gradient_magnitudes(volume: &Volume) -> Result<Vec<f32>> {
+    let (grid, units) = (volume.grid(), GradientUnits::new(volume.grid(), volume.rescale()));
+    Ok(match volume.samples() {
+        Samples::I16(voxels) => gradient_magnitude_per_mm(&Trilinear::new(voxels, grid.dims())?, &units),
+        Samples::F32(voxels) => gradient_magnitude_per_mm(&Trilinear::new(voxels, grid.dims())?, &units),
+    })
+}
+
+/// Smallest and largest of [`gradient_magnitudes`].
+///
+/// # Errors
+/// As [`Trilinear::new`].
+pub fn gradient_range_per_mm(volume: &Volume) -> Result<[f64; 2]> {
+    let magnitudes = gradient_magnitudes(volume)?;
+    let ends = magnitudes.iter().fold([f32::INFINITY, 0.0], |[low, high], &m| [low.min(m), high.max(m)]);
+    Ok(ends.map(f64::from))
 }
 
 fn fill_row<V: Voxel>(field: &Trilinear<'_, V>, units: &GradientUnits, j: usize, k: usize, row: &mut [f32]) {

@@ -22,7 +22,7 @@ mod voxel;
 
 pub use gradient::GradientUnits;
 pub use macrocell::{BLOCK_CELLS, Macrocells};
-pub use magnitude::gradient_magnitude_per_mm;
+pub use magnitude::{gradient_magnitude_per_mm, gradient_magnitudes, gradient_range_per_mm};
 pub use position::{Cell, Pace, Position, Step};
 pub use trilinear::{Trilinear, interpolate};
 pub use voxel::Voxel;

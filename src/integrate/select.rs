@@ -1,13 +1,13 @@
 //! From what a plan says to the types of a kernel, once per frame.
 
 use super::empty_space::EmptySpace;
-use super::march::Kernel;
+use super::march::{Kernel, VtkPhong};
 use super::shade::{Lit, Shader, Unlit};
 use super::{Frame, KernelName, Rendered, Statistics};
-use crate::classify::{Baked, Classifier, bake};
+use crate::classify::{Baked, Classifier, StepOpacity, Tabulated, Texture, bake};
 use crate::error::Result;
-use crate::field::{GradientUnits, Macrocells, Trilinear, Voxel, gradient_magnitude_per_mm};
-use crate::plan::March;
+use crate::field::{GradientUnits, Macrocells, Trilinear, Voxel, gradient_magnitude_per_mm, gradient_range_per_mm};
+use crate::plan::{March, Reflection, Table};
 use crate::volume::Samples;
 
 /// Renders by marching.
@@ -19,9 +19,29 @@ pub(super) fn march(frame: &Frame<'_>, settings: &March) -> Result<Rendered> {
 }
 
 fn by_classifier<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V]) -> Result<Rendered> {
+    if let Some(table) = &settings.table {
+        return by_table(frame, settings, voxels, table);
+    }
     match bake(&frame.scene.transfer_function, frame.volume.rescale()) {
         Baked::OneD(classifier) => by_shader(frame, settings, voxels, &classifier),
         Baked::TwoD(classifier) => by_shader(frame, settings, voxels, &classifier),
+    }
+}
+
+/// Looks the transfer function up in a texture over the volume's own ranges.
+fn by_table<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V], table: &Table) -> Result<Rendered> {
+    let (transfer_function, volume) = (&frame.scene.transfer_function, frame.volume);
+    let (step_mm, rescale) = (settings.step_mm, volume.rescale());
+    if transfer_function.reads_gradient() {
+        let gradients = gradient_range_per_mm(volume)?;
+        let tabulated =
+            Tabulated::new(transfer_function, table.values, volume.value_range(), Some((table.gradients, gradients)))?;
+        let texture = Texture::<2>::new(&tabulated, rescale, StepOpacity { step_mm, uncorrected: 0.0 });
+        by_shader(frame, settings, voxels, &texture)
+    } else {
+        let tabulated = Tabulated::new(transfer_function, table.values, volume.value_range(), None)?;
+        let opacity = StepOpacity { step_mm, uncorrected: table.uncorrected_opacity };
+        by_shader(frame, settings, voxels, &Texture::<1>::new(&tabulated, rescale, opacity))
     }
 }
 
@@ -31,9 +51,13 @@ fn by_shader<V: Voxel, C: Classifier<f32>>(
     voxels: &[V],
     classifier: &C,
 ) -> Result<Rendered> {
-    match &frame.scene.shading {
-        None => run(frame, settings, voxels, classifier, &Unlit),
-        Some(shading) => run(frame, settings, voxels, classifier, &Lit::new(shading)),
+    match (&frame.scene.shading, settings.reflection) {
+        (None, _) => run(frame, settings, voxels, classifier, &Unlit),
+        (Some(shading), Reflection::VtkPhong) => {
+            let shader = VtkPhong::new(shading, &frame.scene.camera, frame.volume.grid(), C::READS_GRADIENT);
+            run(frame, settings, voxels, classifier, &shader)
+        }
+        (Some(shading), Reflection::BlinnPhong) => run(frame, settings, voxels, classifier, &Lit::new(shading)),
     }
 }
 

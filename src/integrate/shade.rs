@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::classify::Rgbs;
+use crate::field::{Cell, Position, Trilinear, Voxel};
 use crate::scene::Shading;
 
 /// Shades a sample. Chosen by type, once per frame.
@@ -16,6 +17,12 @@ pub(super) trait Shader: Sync {
 
     /// Computes what is constant along a ray of this direction.
     fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
+
+    /// The gradient that it shades by, in stored units per index step.
+    #[inline(always)]
+    fn gradient_per_index<V: Voxel>(&self, field: &Trilinear<'_, V>, _position: Position, cell: &Cell) -> [f32; 3] {
+        field.gradient_per_index(cell)
+    }
 
     /// Emission after shading, for a gradient in HU/mm.
     fn shade(&self, aim: &Self::Aim, sample: Rgbs<f32>, gradient_per_mm: [f32; 3]) -> Rgbs<f32>;

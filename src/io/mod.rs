@@ -5,6 +5,7 @@
 pub mod dicom;
 pub mod exr;
 mod load;
+pub mod npy;
 pub mod nrrd;
 pub mod picture;
 pub mod png;

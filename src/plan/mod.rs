@@ -18,7 +18,9 @@ mod warnings;
 
 pub use explain::{explain, explain_json};
 pub use layers::Layer;
-pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
+pub use method::{
+    Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,
+};
 pub use output::{Format, Output};
 pub use stages::{Omission, Stage};
 pub use volume_info::{Storage, VolumeInfo};

@@ -4,7 +4,9 @@ use crate::scene::{Model, Scene};
 use crate::spec::Spec;
 use crate::volume::Grid;
 
-use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, SampleRule, VolumeInfo};
+use super::{
+    Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, Reflection, SampleRule, VolumeInfo,
+};
 
 /// One stage of the computation.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -131,6 +133,7 @@ fn describe_method(method: &Method) -> String {
         SampleRule::Left => "left samples",
         SampleRule::Midpoint => "midpoint samples",
         SampleRule::Trapezoid => "trapezoid samples",
+        SampleRule::WholeSteps => "samples at the ends of whole steps",
     };
     let order = match march.order {
         Order::FrontToBack => "front to back",
@@ -141,6 +144,8 @@ fn describe_method(method: &Method) -> String {
         (march.colors == Colors::Straight, "straight colours"),
         (march.emission == Emission::PerSample, "emission per sample"),
         (march.lattice == Lattice::ViewPlanes, "on view planes"),
+        (march.table.is_some(), "from a table"),
+        (march.reflection == Reflection::VtkPhong, "highlights as VTK's"),
     ];
     parts.extend(unusual.into_iter().filter(|(is, _)| *is).map(|(_, text)| text.to_owned()));
     if let Some(Jitter { seed, kind }) = march.jitter {

@@ -29,8 +29,8 @@ pub use camera::{CameraSpec, Fit, ProjectionName, ViewName};
 pub use color::Color;
 pub use effects::{EffectsSpec, LightSpec, ProjectSpec, ProjectionOf, ShadingSpec, SurfaceSpec};
 pub use integrate::{
-    ColorsName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName,
-    RuleName,
+    ColorsName, CompatibilityName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName,
+    MarchSpec, OrderName, ReflectionName, RuleName, TableSpec,
 };
 pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset};
 pub use pipeline::{

@@ -2,6 +2,7 @@
 
 mod side;
 mod text;
+mod vtk;
 
 use std::path::{Path, PathBuf};
 
@@ -20,11 +21,15 @@ const ONE_STEP: f64 = 1.0 / 255.0;
 /// Arguments of `pellucid compare`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Compare {
-    /// The reference: a picture (.png or .exr), or a pipeline (.yaml) to be rendered
+    /// The reference: a picture (.png, .exr or .npy), or a pipeline (.yaml) to be rendered
     reference: PathBuf,
 
     /// What is held against it: a picture, or a pipeline
-    test: PathBuf,
+    #[arg(required_unless_present = "vtk", conflicts_with = "vtk")]
+    test: Option<PathBuf>,
+
+    #[command(flatten)]
+    vtk: vtk::LiveVtk,
 
     /// Set a key of the pipelines, such as `camera.azimuth=25`; the value is YAML. May be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -62,8 +67,16 @@ pub(super) struct Compare {
 impl Compare {
     /// Compares; the numbers go to stdout. An error if the pictures are further apart than allowed.
     pub(super) fn run(&self, global: &Global) -> Result<()> {
-        let [reference, test] = [&self.reference, &self.test].map(|path| Side::of(path).picture(&self.set, global));
-        let (reference, test) = (reference?, test?);
+        let (reference, test) = match &self.test {
+            Some(test) => {
+                let [reference, test] = [&self.reference, test].map(|path| Side::of(path).picture(&self.set, global));
+                (reference?, test?)
+            }
+            None => (
+                self.vtk.picture(&self.reference, &self.set)?,
+                Side::Pipeline(&self.reference).picture(&self.set, global)?,
+            ),
+        };
         let tolerance = self.tolerance.unwrap_or(ONE_STEP);
         let comparison = compare_as_seen(&reference, &test, tolerance)?;
         self.draw(&reference, &test)?;
@@ -109,7 +122,7 @@ impl Compare {
             return Ok(());
         }
         Err(Error::new(Fault::Tolerance, "the pictures are further apart than allowed")
-            .at(&self.test)
+            .at(self.test.as_ref().unwrap_or(&self.reference))
             .found(objections.join("; ")))
     }
 }

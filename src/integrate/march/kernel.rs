@@ -107,7 +107,8 @@ impl<V: Voxel, C: Classifier<f32>, S: Shader> Kernel<'_, V, C, S> {
         if !S::READS_GRADIENT || optics == [0.0; 4] {
             return optics;
         }
-        self.shader.shade(aim, optics, self.units.per_mm(self.field.gradient_per_index(&cell)))
+        let gradient = self.shader.gradient_per_index(&self.field, position, &cell);
+        self.shader.shade(aim, optics, self.units.per_mm(gradient))
     }
 }
 

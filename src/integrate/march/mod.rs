@@ -8,9 +8,11 @@ mod composite;
 mod jitter;
 mod kernel;
 mod lattice;
+mod phong;
 
 pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
+pub(super) use phong::VtkPhong;
 
 use crate::error::{Error, Fault, Result};
 use crate::plan::March;
