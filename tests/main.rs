@@ -18,3 +18,4 @@ mod properties;
 mod spec;
 mod support;
 mod verify;
+mod vtk;
