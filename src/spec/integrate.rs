@@ -28,9 +28,6 @@ pub struct ExactSpec {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MarchSpec {
-    /// Defaults of the keys below as another program has them, for comparison; our own by default.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub compatibility: Option<CompatibilityName>,
     /// Distance between samples, mm, above 0. Not together with `step_voxels`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step_mm: Option<f64>,
@@ -66,6 +63,9 @@ pub struct MarchSpec {
     /// The model of the highlight and of the lights; `blinn-phong`, the definition, by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reflection: Option<ReflectionName>,
+    /// Defaults of the keys above as another program has them, for comparison; our own by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compatibility: Option<CompatibilityName>,
 }
 
 /// A transfer function as a table over the range of the volume's own values and gradient magnitudes.

@@ -22,7 +22,7 @@ fn without_each_convention_it_is_another_picture() {
     for (name, override_, convention, least) in [
         ("head-coarse", "integrate.march.rule=midpoint", "samples at the ends of whole steps", 2.0),
         ("head-thin-shells", "integrate.march.table.values=65536", "a table of 4096 entries", 6.0),
-        ("head-faint", "integrate.march.table.uncorrected_opacity=0", "faint opacities uncorrected", 2.0),
+        ("head-faint", "integrate.march.table.uncorrected_opacity=0", "faint opacities uncorrected", 0.4),
         ("head-opaque", "integrate.march.termination_transmittance=0", "rays that end at 254/255", 0.4),
         ("head-lit", "integrate.march.reflection=blinn-phong", "Phong's highlight", 2.0),
     ] {

@@ -81,8 +81,8 @@ mod tests {
     fn the_parts_stand_next_to_one_another_and_the_map_shows_where() {
         let a = Image::from_pixels(20, 32, vec![[0.5, 0.25, 0.0, 0.5]; 640]);
         let mut b = a.clone();
-        b.pixels_mut()[7 * 20 + 3][3] += 0.01;
-        let figure = side_by_side(&a, &b, 0.01);
+        b.pixels_mut()[7 * 20 + 3][3] += 0.125;
+        let figure = side_by_side(&a, &b, 0.125);
         assert_eq!(figure.height(), 32);
         assert_eq!(figure.pixel(3, 7), [0.5, 0.25, 0.0, 1.0], "the first picture, in front of black");
         assert_eq!(figure.pixel(20, 0), PAPER, "a gap");
