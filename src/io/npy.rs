@@ -34,7 +34,7 @@ fn header(shape: &[usize]) -> Vec<u8> {
     [b"\x93NUMPY\x01\x00".as_slice(), &length.to_le_bytes(), dictionary.as_bytes()].concat()
 }
 
-/// Reads an array of f32 as [`write`] makes it: its shape and its values.
+/// Reads an array of f32 as [`write()`] makes it: its shape and its values.
 ///
 /// # Errors
 /// `Fault::Input` for a file that is missing, cut short or of another kind of number.

@@ -63,12 +63,12 @@ mod tests {
         let voxels: Vec<f32> = (0..12).map(|i| i as f32).collect();
         let ordered = frame.ordered(&voxels);
         assert!(frame.motion.matrix3.determinant() > 0.0, "right-handed");
-        for i in 0..12 {
+        for (i, &found) in ordered.iter().enumerate() {
             let [x, y, z] = grid.unflatten(i);
             let at = frame.motion.transform_point3(frame.spacing_mm * DVec3::new(x as f64, y as f64, z as f64));
             let index = grid.lps_mm_to_index().transform_point3(at).round();
             let same = voxels[grid.flatten([index.x as usize, index.y as usize, index.z as usize])];
-            assert_eq!(ordered[i], same, "the voxel at {at}");
+            assert_eq!(found, same, "the voxel at {at}");
         }
     }
 
