@@ -32,6 +32,7 @@ pub mod plan;
 pub mod integrate;
 pub mod tissue;
 
+pub mod interchange;
 pub mod pipeline;
 pub mod verify;
 

@@ -14,7 +14,7 @@ const LAYERS: [&[&str]; 6] = [
     &["field", "classify", "spec", "io", "synthetic"],
     &["plan", "oracle"],
     &["integrate", "tissue"],
-    &["pipeline", "verify"],
+    &["interchange", "pipeline", "verify"],
 ];
 
 /// Modules that may use less than their layer allows: `(user, what it may use, why)`.

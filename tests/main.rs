@@ -26,3 +26,4 @@ mod support;
 mod tissue;
 mod verify;
 mod voxels;
+mod vtk;

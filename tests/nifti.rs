@@ -57,7 +57,7 @@ impl File {
         } else {
             file.write_all(&self.bytes).expect("written");
         }
-        nifti::read(&path)
+        nifti::read(&path, None)
     }
 
     fn read(&self) -> Result<Scan> {

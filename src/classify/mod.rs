@@ -7,10 +7,14 @@
 
 mod axis;
 mod one_d;
+mod table;
+mod texture;
 mod two_d;
 
 pub use axis::Axis;
 pub use one_d::{Linear, OneD};
+pub use table::Tabulated;
+pub use texture::{StepOpacity, Texture};
 pub use two_d::{Bilinear, TwoD};
 
 use crate::math::Real;

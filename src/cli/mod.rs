@@ -4,9 +4,11 @@
 //! [`pellucid::Fault`]; 2 is clap's, for a command line that cannot be read.
 
 mod classify;
+mod compare;
 mod completions;
 mod evaluate;
 mod explain;
+mod export_vtk;
 mod histogram;
 mod info;
 mod phantom;
@@ -71,6 +73,10 @@ enum Command {
     Presets(presets::Presets),
     /// Print the JSON Schema of pipelines or presets, for editors
     Schema(schema::Schema),
+    /// Compare two pictures, each a file or what a pipeline renders
+    Compare(compare::Compare),
+    /// Write a Python script that renders a pipeline's scene with VTK
+    ExportVtk(export_vtk::ExportVtk),
     /// Verify the integrators: orders of convergence, errors against the truth, identities
     Verify(verify::Verify),
     /// Print a completion script for a shell
@@ -133,6 +139,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         Command::Phantom(command) => command.run(),
         Command::Presets(command) => command.run(),
         Command::Schema(command) => command.run(),
+        Command::Compare(command) => command.run(global),
+        Command::ExportVtk(command) => command.run(),
         Command::Verify(command) => command.run(),
         Command::Completions(command) => command.run(),
     }

@@ -3,6 +3,8 @@
 use rayon::prelude::*;
 
 use super::{Even, GradientUnits, Spacing, Trilinear, Voxel};
+use crate::error::Result;
+use crate::volume::{Samples, Volume};
 
 /// The gradient magnitude at every voxel, HU/mm, x fastest: 4 bytes per voxel, computed in parallel. Only 2D transfer
 /// functions read it.
@@ -27,6 +29,29 @@ pub fn gradient_magnitude_row<V: Voxel, K: Spacing>(
 ) {
     assert_eq!(row.len(), field.dims[0], "voxels in a row");
     fill_row(field, units, j, k, row);
+}
+
+/// The gradient magnitude at every voxel of a volume with even slices, HU/mm, x fastest; 0 where there are no values.
+///
+/// # Errors
+/// As [`Trilinear::new`].
+pub fn gradient_magnitudes(volume: &Volume) -> Result<Vec<f32>> {
+    let (grid, units) = (volume.grid(), GradientUnits::new(volume.grid(), volume.rescale()));
+    Ok(match volume.samples() {
+        Samples::I16(voxels) => gradient_magnitude_per_mm(&Trilinear::new(voxels, grid.dims())?, &units),
+        Samples::F32(voxels) => gradient_magnitude_per_mm(&Trilinear::new(voxels, grid.dims())?, &units),
+        Samples::Rgba8(_) | Samples::Rgba16(_) => vec![0.0; grid.voxel_count()],
+    })
+}
+
+/// Smallest and largest of [`gradient_magnitudes`].
+///
+/// # Errors
+/// As [`Trilinear::new`].
+pub fn gradient_range_per_mm(volume: &Volume) -> Result<[f64; 2]> {
+    let magnitudes = gradient_magnitudes(volume)?;
+    let ends = magnitudes.iter().fold([f32::INFINITY, 0.0], |[low, high], &m| [low.min(m), high.max(m)]);
+    Ok(ends.map(f64::from))
 }
 
 fn fill_row<V: Voxel, K: Spacing>(

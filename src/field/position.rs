@@ -78,6 +78,15 @@ impl Position {
         Position(std::array::from_fn(|a| self.0[a] + step.0[a] * count as i64))
     }
 
+    /// The position so many voxels further along an axis of a lattice of `dims` voxels, clamped as by [`Position::new`].
+    #[inline(always)]
+    #[must_use]
+    pub fn beside(mut self, axis: usize, voxels: f64, dims: [usize; 3]) -> Self {
+        let end = (dims[axis] as i64 - 1) << FRACTION_BITS;
+        self.0[axis] = (self.0[axis] + (voxels * (1i64 << FRACTION_BITS) as f64) as i64).min(end - 1).max(0);
+        self
+    }
+
     /// The cell, and where in it, if slices are one step apart.
     #[inline(always)]
     pub fn even_cell(self) -> Cell {

@@ -1,7 +1,10 @@
 //! Pictures: linear, premultiplied RGBA in f32 until they are encoded.
 
+mod color_space;
+pub mod figure;
 pub mod metrics;
 pub mod over;
+mod plane;
 pub mod srgb;
 
 /// A picture in memory: linear RGB premultiplied by alpha, f32, row by row from the top left.

@@ -3,14 +3,16 @@
 use super::atmosphere::Atmosphere;
 use super::classify_voxels::classify_voxels;
 use super::empty_space::EmptySpace;
-use super::march::{AtVoxels, ByPlace, Classified, Kernel, Masked};
+use super::march::{AtVoxels, ByPlace, Classified, Kernel, Masked, VtkPhong};
 use super::shade::{Lit, Shader, Unlit};
 use super::texels::{Component, Rgba, Texels};
 use super::{Frame, KernelName, Rendered, Statistics};
-use crate::classify::{Baked, BakedAlike, bake, bake_alike};
+use crate::classify::{Baked, BakedAlike, StepOpacity, Tabulated, Texture, bake, bake_alike};
 use crate::error::Result;
-use crate::field::{GradientUnits, Macrocells, SliceTable, Spacing, Trilinear, Voxel, gradient_magnitude_per_mm};
-use crate::plan::March;
+use crate::field::{
+    GradientUnits, Macrocells, SliceTable, Spacing, Trilinear, Voxel, gradient_magnitude_per_mm, gradient_range_per_mm,
+};
+use crate::plan::{March, Reflection, Table};
 use crate::scene::ClassifyAt;
 use crate::volume::Samples;
 
@@ -55,9 +57,29 @@ fn by_classifier<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V]) ->
             BakedAlike::TwoD(all) => by_shader(frame, settings, voxels, &Masked::new(all, classes, grid)),
         };
     }
+    if let Some(table) = &settings.table {
+        return by_table(frame, settings, voxels, table);
+    }
     match bake(&frame.scene.transfer_function, frame.volume.rescale()) {
         Baked::OneD(classifier) => by_shader(frame, settings, voxels, &classifier),
         Baked::TwoD(classifier) => by_shader(frame, settings, voxels, &classifier),
+    }
+}
+
+/// Looks the transfer function up in a texture over the volume's own ranges.
+fn by_table<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V], table: &Table) -> Result<Rendered> {
+    let (transfer_function, volume) = (&frame.scene.transfer_function, frame.volume);
+    let (step_mm, rescale) = (settings.step_mm, volume.rescale());
+    if transfer_function.reads_gradient() {
+        let gradients = gradient_range_per_mm(volume)?;
+        let tabulated =
+            Tabulated::new(transfer_function, table.values, volume.value_range(), Some((table.gradients, gradients)))?;
+        let texture = Texture::<2>::new(&tabulated, rescale, StepOpacity { step_mm, uncorrected: 0.0 });
+        by_shader(frame, settings, voxels, &texture)
+    } else {
+        let tabulated = Tabulated::new(transfer_function, table.values, volume.value_range(), None)?;
+        let opacity = StepOpacity { step_mm, uncorrected: table.uncorrected_opacity };
+        by_shader(frame, settings, voxels, &Texture::<1>::new(&tabulated, rescale, opacity))
     }
 }
 
@@ -71,9 +93,13 @@ fn by_shader<V: Voxel, C: ByPlace>(
         let atmosphere = Atmosphere::new(frame.volume, frame.scene);
         return by_spacing(frame, settings, voxels, classifier, &atmosphere);
     }
-    match &frame.scene.shading {
-        None => by_spacing(frame, settings, voxels, classifier, &Unlit),
-        Some(shading) => by_spacing(frame, settings, voxels, classifier, &Lit::new(shading)),
+    match (&frame.scene.shading, settings.reflection) {
+        (None, _) => by_spacing(frame, settings, voxels, classifier, &Unlit),
+        (Some(shading), Reflection::VtkPhong) => {
+            let shader = VtkPhong::new(shading, &frame.scene.camera, frame.volume.grid(), C::READS_GRADIENT);
+            by_spacing(frame, settings, voxels, classifier, &shader)
+        }
+        (Some(shading), Reflection::BlinnPhong) => by_spacing(frame, settings, voxels, classifier, &Lit::new(shading)),
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::classify::Rgbs;
-use crate::field::Cell;
+use crate::field::{Cell, Position, Spacing, Trilinear, Voxel};
 use crate::scene::{Haze, Shading};
 
 /// Shades a sample. Chosen by type, once per frame.
@@ -17,6 +17,17 @@ pub(super) trait Shader: Sync {
 
     /// Computes what is constant along a ray of this direction.
     fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
+
+    /// The gradient that it shades by, in stored units per index step.
+    #[inline(always)]
+    fn gradient_per_index<V: Voxel, K: Spacing>(
+        &self,
+        field: &Trilinear<'_, V, K>,
+        _position: Position,
+        cell: &Cell,
+    ) -> [f32; 3] {
+        field.gradient_per_index(cell)
+    }
 
     /// What is there to be seen of a sample; `gradient` gives the gradient there, HU/mm.
     fn shade(&self, aim: &Self::Aim, sample: Rgbs<f32>, spot: &Spot, gradient: impl FnOnce() -> [f32; 3]) -> Rgbs<f32>;

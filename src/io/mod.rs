@@ -8,7 +8,9 @@ mod label_map;
 pub mod labels;
 mod load;
 pub mod nifti;
+pub mod npy;
 pub mod nrrd;
+pub mod picture;
 pub mod png;
 pub mod whole_file;
 

@@ -99,6 +99,19 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
     Ok(Outcome { picture: plan.output.path, sidecar_path, sidecar })
 }
 
+/// Renders a pipeline and writes nothing.
+///
+/// # Errors
+/// Those of each stage.
+pub fn picture(spec: &Spec, progress: Progress<'_>) -> Result<Rendered> {
+    let (mut stopwatch, options) = (Stopwatch::start(progress), Options::default());
+    let scan = load(spec, &options)?;
+    let plan = plan(spec, &scan, &options)?;
+    memory::check(&plan, &options)?;
+    let (scan, _) = mask::classified(scan, &plan, &mut stopwatch)?;
+    integrate(&scan, &plan, progress)
+}
+
 /// The plan for a scan, with its picture where the caller wants it.
 ///
 /// # Errors

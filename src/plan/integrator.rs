@@ -1,9 +1,12 @@
 //! Settings of the integrators, with their defaults.
 
-use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule, VolumeInfo};
+use super::{
+    Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,
+    VolumeInfo,
+};
 use crate::spec::{
-    ColorsName, EmissionName, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec, OrderName, RuleName,
-    Spec,
+    ColorsName, CompatibilityName, EmissionName, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec,
+    OrderName, ReflectionName, RuleName, Spec, TableSpec,
 };
 
 pub(super) fn resolve(spec: &Spec, volume: &VolumeInfo) -> Method {
@@ -21,12 +24,15 @@ fn exact(tolerance: Option<f64>) -> Exact {
 }
 
 fn march(spec: &MarchSpec, volume: &VolumeInfo) -> March {
+    let vtk = spec.compatibility == Some(CompatibilityName::Vtk);
     March {
         step_mm: spec.step_mm.unwrap_or(spec.step_voxels.unwrap_or(0.5) * volume.smallest_spacing_mm()),
         rule: match spec.rule {
             Some(RuleName::Left) => SampleRule::Left,
+            None if vtk => SampleRule::WholeSteps,
             None | Some(RuleName::Midpoint) => SampleRule::Midpoint,
             Some(RuleName::Trapezoid) => SampleRule::Trapezoid,
+            Some(RuleName::WholeSteps) => SampleRule::WholeSteps,
         },
         order: match spec.order {
             None | Some(OrderName::FrontToBack) => Order::FrontToBack,
@@ -46,7 +52,34 @@ fn march(spec: &MarchSpec, volume: &VolumeInfo) -> March {
         },
         bisections: spec.bisections.unwrap_or(0),
         jitter: spec.jitter.as_ref().map(jitter),
-        termination_transmittance: spec.termination_transmittance.unwrap_or(0.0),
+        termination_transmittance: spec.termination_transmittance.unwrap_or(if vtk { VTK_TERMINATION } else { 0.0 }),
+        table: match &spec.table {
+            // A table is made for steps of one length.
+            None if vtk && matches!(spec.rule, None | Some(RuleName::WholeSteps)) => {
+                Some(table(&TableSpec::default(), vtk))
+            }
+            None => None,
+            Some(written) => Some(table(written, vtk)),
+        },
+        reflection: match spec.reflection {
+            None if vtk => Reflection::VtkPhong,
+            None | Some(ReflectionName::BlinnPhong) => Reflection::BlinnPhong,
+            Some(ReflectionName::VtkPhong) => Reflection::VtkPhong,
+        },
+    }
+}
+
+/// VTK's GPU mapper stops where the opacity is above 1 - 1/255.
+const VTK_TERMINATION: f64 = 1.0 / 255.0;
+
+/// VTK's GPU mapper corrects opacities above this for the step.
+const VTK_UNCORRECTED: f64 = 1e-4;
+
+fn table(spec: &TableSpec, vtk: bool) -> Table {
+    Table {
+        values: spec.values.unwrap_or(4096) as usize,
+        gradients: spec.gradients.unwrap_or(1024) as usize,
+        uncorrected_opacity: spec.uncorrected_opacity.unwrap_or(if vtk { VTK_UNCORRECTED } else { 0.0 }),
     }
 }
 

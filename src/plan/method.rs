@@ -42,6 +42,33 @@ pub struct March {
     pub jitter: Option<Jitter>,
     /// A front-to-back ray stops where less than this transmittance is left; 0 never.
     pub termination_transmittance: f64,
+    /// The transfer function as a table; `None` evaluates it as it is defined.
+    pub table: Option<Table>,
+    /// The model of the highlight and of the lights.
+    pub reflection: Reflection,
+}
+
+/// A transfer function sampled over the range of the volume's own values and gradient magnitudes, looked up as graphics
+/// hardware looks up a texture: see [`crate::classify::Tabulated`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Table {
+    /// Entries along the value axis, at least 2.
+    pub values: usize,
+    /// Entries along the gradient axis of a transfer function that has one, at least 2.
+    pub gradients: usize,
+    /// Opacities of 1 mm that are at most this are taken for those of a step, whatever its length; of transfer functions
+    /// of the value alone.
+    pub uncorrected_opacity: f64,
+}
+
+/// The model of the highlight and of the lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reflection {
+    /// As [`crate::scene::Shading`] defines it.
+    BlinnPhong,
+    /// As VTK's GPU mapper does it: Phong's highlight about the mirrored light, no fade where the gradient vanishes.
+    VtkPhong,
 }
 
 /// Where in an interval its sample lies.
@@ -54,6 +81,9 @@ pub enum SampleRule {
     Midpoint,
     /// At both ends, averaged: second order.
     Trapezoid,
+    /// At the end of each whole step; what is left of the ray after the last whole step counts for nothing. At least one
+    /// sample is taken, be the ray shorter than a step. VTK without jitter; first order.
+    WholeSteps,
 }
 
 /// Direction of compositing; the results differ by rounding only.

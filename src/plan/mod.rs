@@ -28,7 +28,9 @@ use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
 pub use layers::Layer;
 pub use mask::LabelClasses;
-pub use method::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, SampleRule};
+pub use method::{
+    Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,
+};
 pub use output::{Format, Output};
 pub use stack::StackPlan;
 pub use stages::{Omission, Stage};

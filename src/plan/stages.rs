@@ -6,7 +6,9 @@ use crate::transfer::TransferFunction;
 use crate::volume::Grid;
 
 use super::model::{self, reads_transfer_function};
-use super::{Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, SampleRule, VolumeInfo};
+use super::{
+    Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, Reflection, SampleRule, VolumeInfo,
+};
 use super::{clip, mask, voxels};
 
 /// One stage of the computation.
@@ -181,6 +183,7 @@ fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
         SampleRule::Left => "left samples",
         SampleRule::Midpoint => "midpoint samples",
         SampleRule::Trapezoid => "trapezoid samples",
+        SampleRule::WholeSteps => "samples at the ends of whole steps",
     };
     let order = match march.order {
         Order::FrontToBack => "front to back",
@@ -195,6 +198,8 @@ fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
         (march.colors == Colors::Straight, "straight colours"),
         (march.emission == Emission::PerSample, "emission per sample"),
         (march.lattice == Lattice::ViewPlanes, "on view planes"),
+        (march.table.is_some(), "from a table"),
+        (march.reflection == Reflection::VtkPhong, "highlights as VTK's"),
     ];
     parts.extend(unusual.into_iter().filter(|(is, _)| *is).map(|(_, text)| text.to_owned()));
     if let Some(Jitter { seed, kind }) = march.jitter {

@@ -61,6 +61,55 @@ pub struct MarchSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub termination_transmittance: Option<f64>,
+    /// Look the transfer function up in a table, as renderers on graphics hardware do; by default it is evaluated as it is
+    /// defined.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub table: Option<TableSpec>,
+    /// The model of the highlight and of the lights; `blinn-phong`, the definition, by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reflection: Option<ReflectionName>,
+    /// Defaults of the keys above as another program has them, for comparison; our own by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compatibility: Option<CompatibilityName>,
+}
+
+/// A transfer function as a table over the range of the volume's own values and gradient magnitudes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// Entries along the value axis; 4096 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 2, max = 65536))]
+    pub values: Option<u32>,
+    /// Entries along the gradient axis of a transfer function that has one; 1024 by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 2, max = 65536))]
+    pub gradients: Option<u32>,
+    /// Opacities of 1 mm that are at most this are taken for those of a step, whatever its length, where the transfer
+    /// function is one of the value alone; 0 by default, 1e-4 with `compatibility: vtk`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1))]
+    pub uncorrected_opacity: Option<f64>,
+}
+
+/// A program whose conventions are taken over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompatibilityName {
+    /// VTK's GPU mapper: `rule: whole-steps`, `table: {}` with opacities of up to 1e-4 left uncorrected, `reflection:
+    /// vtk-phong`, and `termination_transmittance: 1/255`.
+    Vtk,
+}
+
+/// The model of the highlight and of the lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ReflectionName {
+    /// The definition.
+    BlinnPhong,
+    /// As VTK's GPU mapper does it: Phong's highlight, no soft fade, a headlight that is a light from the eye only if it is
+    /// the only one, no ambient light with any other.
+    VtkPhong,
 }
 
 /// Offset of the sample lattice per pixel, the same for any number of threads.
@@ -85,6 +134,8 @@ pub enum RuleName {
     Midpoint,
     /// At both ends, averaged: second order.
     Trapezoid,
+    /// At the end of each whole step, the rest of the ray left out: first order, as VTK does without jitter.
+    WholeSteps,
 }
 
 /// Direction of compositing.

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::integrate;
 use crate::integrate::exact::{Precision, tracer};
 use crate::oracle::Oracle;
-use crate::plan::{Colors, Emission, Lattice, March, Method, Order, SampleRule};
+use crate::plan::{Colors, Emission, Lattice, March, Method, Order, Reflection, SampleRule};
 use crate::scene::Scene;
 use crate::volume::Volume;
 
@@ -32,6 +32,8 @@ pub(super) fn settings(rule: SampleRule, step_mm: f64) -> March {
         bisections: 0,
         jitter: None,
         termination_transmittance: 0.0,
+        table: None,
+        reflection: Reflection::BlinnPhong,
     }
 }
 

@@ -17,7 +17,7 @@ use glam::DVec3;
 use pellucid::integrate::exact::{Precision, tracer};
 use pellucid::integrate::render;
 use pellucid::oracle::Oracle;
-use pellucid::plan::{Colors, Emission, Lattice, March, Method, Order, SampleRule};
+use pellucid::plan::{Colors, Emission, Lattice, March, Method, Order, Reflection, SampleRule};
 use pellucid::scene::{Camera, Projection, Ray, Scene};
 use pellucid::volume::Volume;
 
@@ -216,6 +216,8 @@ fn settings(step_mm: f64) -> March {
         bisections: 0,
         jitter: None,
         termination_transmittance: 0.0,
+        table: None,
+        reflection: Reflection::BlinnPhong,
     }
 }
 

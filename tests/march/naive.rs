@@ -23,6 +23,8 @@ pub(crate) fn march(volume: &Volume, scene: &Scene, settings: &March) -> Vec<[f6
                 let q = match settings.rule {
                     SampleRule::Left => optics(a),
                     SampleRule::Midpoint => optics(0.5 * (a + b)),
+                    SampleRule::WholeSteps if b - a < 0.999_999 * settings.step_mm => [0.0; 4],
+                    SampleRule::WholeSteps => optics(b),
                     SampleRule::Trapezoid => {
                         let (q, r) = (optics(a), optics(b));
                         std::array::from_fn(|c| 0.5 * (q[c] + r[c]))

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use pellucid::integrate::{Rendered, render};
-use pellucid::plan::{Colors, Emission, Lattice, March, Method, Order, SampleRule};
+use pellucid::plan::{Colors, Emission, Lattice, March, Method, Order, Reflection, SampleRule};
 use pellucid::scene::{Background, Camera, Effects, Light, Model, Projection, Scene, Shading};
 use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
 use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
@@ -18,6 +18,8 @@ pub(crate) const MARCH: March = March {
     bisections: 0,
     jitter: None,
     termination_transmittance: 0.0,
+    table: None,
+    reflection: Reflection::BlinnPhong,
 };
 
 /// A sheared, anisotropic grid of 21 x 18 x 13 voxels.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pellucid::Fault;
 use pellucid::plan::{
-    Colors, Emission, Exact, Format, Jitter, JitterKind, Lattice, March, Method, Order, Plan, SampleRule,
+    Colors, Emission, Exact, Format, Jitter, JitterKind, Lattice, March, Method, Order, Plan, Reflection, SampleRule,
 };
 use pellucid::scene::{Background, Light};
 
@@ -20,6 +20,8 @@ const MARCH: March = March {
     bisections: 0,
     jitter: None,
     termination_transmittance: 0.0,
+    table: None,
+    reflection: Reflection::BlinnPhong,
 };
 
 #[test]

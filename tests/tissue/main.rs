@@ -80,7 +80,7 @@ impl Loaded {
     fn new(data: &Path, scan: &Scan) -> Result<Self> {
         let source = format!("volume.source={}", data.join(scan.scan).display());
         let spec = Spec::load(Path::new("pipelines/tissues.yaml"), &[source])?;
-        let volume = load(&data.join(scan.scan), &SeriesChoice::Largest)?.volume;
+        let volume = load(&data.join(scan.scan), &SeriesChoice::Largest, None)?.volume;
         let tissues = Classification::new(&spec, &VolumeInfo::from(&volume))?;
         let reference = read_labels(&data.join(scan.reference))?;
         Ok(Loaded { volume, reference, tissues, subjects: scan.subjects })
@@ -145,7 +145,7 @@ impl Row {
 
 /// What is possible for organs that no preset is made for.
 fn organs(data: &Path) -> Result<String> {
-    let volume = load(&data.join(SCANS[0].scan), &SeriesChoice::Largest)?.volume;
+    let volume = load(&data.join(SCANS[0].scan), &SeriesChoice::Largest, None)?.volume;
     let reference = read_labels(&data.join(SCANS[0].reference))?;
     let mut table = String::new();
     for Organ { name, labels } in &ORGANS {

@@ -27,7 +27,7 @@ fn presets_agree_as_promised() {
         let (Some(path), Some(reference)) = (scan_path(scan.scan), scan_path(scan.reference)) else { return };
         let pipeline = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines/tissues.yaml");
         let spec = Spec::load(&pipeline, &[]).unwrap();
-        let volume = load(&path, &SeriesChoice::Largest).unwrap().volume;
+        let volume = load(&path, &SeriesChoice::Largest, None).unwrap().volume;
         let reference = read_labels(&reference).unwrap();
         let tissues = Classification::new(&spec, &VolumeInfo::from(&volume)).unwrap();
         let labels = classify(&volume, &tissues).unwrap();
@@ -53,7 +53,7 @@ fn bounds_and_proposals_are_those_of_another_program() {
         [(&SCANS[0], 0, [0.8056, 0.8109]), (&SCANS[1], 0, [0.8884, 0.9232]), (&SCANS[1], 1, [0.4570, 0.4911])]
     {
         let (Some(path), Some(reference)) = (scan_path(scan.scan), scan_path(scan.reference)) else { return };
-        let volume = load(&path, &SeriesChoice::Largest).unwrap().volume;
+        let volume = load(&path, &SeriesChoice::Largest, None).unwrap().volume;
         let reference = read_labels(&reference).unwrap();
         let mask = mask_of(&reference, &positions(&reference, scan.subjects[tissue].labels));
         let found = bound(&volume, &mask).unwrap();

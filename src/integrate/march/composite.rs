@@ -65,7 +65,7 @@ pub(super) type Fold = fn(&mut Light, &[Rgbs<f32>], f32);
 /// The fold that these settings ask for.
 pub(super) fn fold(settings: &March) -> Fold {
     match settings.rule {
-        SampleRule::Left | SampleRule::Midpoint => by_order::<OnePoint>(settings),
+        SampleRule::Left | SampleRule::Midpoint | SampleRule::WholeSteps => by_order::<OnePoint>(settings),
         SampleRule::Trapezoid => by_order::<TwoPoints>(settings),
     }
 }
@@ -78,6 +78,9 @@ fn by_order<R: Rule>(settings: &March) -> Fold {
 }
 
 fn by_colors<R: Rule, D: Direction>(settings: &March) -> Fold {
+    if settings.table.is_some() {
+        return fold_run::<R, D, Associated, PerStep>;
+    }
     match (settings.colors, settings.emission) {
         (Colors::Associated, Emission::PerLength) => fold_run::<R, D, Associated, PerLength>,
         (Colors::Associated, Emission::PerSample) => fold_run::<R, D, Associated, PerSample>,
@@ -96,7 +99,7 @@ fn fold_run<R: Rule, D: Direction, K: Coloring, E: Measure>(light: &mut Light, r
         let depth = extinction * delta_mm;
         let weight = E::weight(depth, delta_mm);
         let added = [r, g, b].map(|q| f64::from(q * weight));
-        D::composite::<K>(light, added, f64::from(absorbed_f32(depth)));
+        D::composite::<K>(light, added, f64::from(E::opacity(extinction, depth)));
         if light.is_spent() {
             return;
         }
@@ -129,10 +132,30 @@ impl Rule for TwoPoints {
 /// What a sample's emission is multiplied by.
 trait Measure {
     fn weight(depth: f32, delta_mm: f32) -> f32;
+
+    /// The share absorbed by an interval of this optical depth.
+    #[inline(always)]
+    fn opacity(_extinction: f32, depth: f32) -> f32 {
+        absorbed_f32(depth)
+    }
 }
 
 struct PerLength;
 struct PerSample;
+/// Samples of a table that is made for one length of step: premultiplied colour and opacity of a step, not per mm.
+struct PerStep;
+
+impl Measure for PerStep {
+    #[inline(always)]
+    fn weight(_depth: f32, _delta_mm: f32) -> f32 {
+        1.0
+    }
+
+    #[inline(always)]
+    fn opacity(of_a_step: f32, _depth: f32) -> f32 {
+        of_a_step
+    }
+}
 
 impl Measure for PerLength {
     #[inline(always)]
@@ -206,7 +229,7 @@ impl Direction for BackToFront {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Lattice;
+    use crate::plan::{Lattice, Reflection};
 
     const SETTINGS: March = March {
         step_mm: 1.0,
@@ -218,6 +241,8 @@ mod tests {
         bisections: 0,
         jitter: None,
         termination_transmittance: 0.0,
+        table: None,
+        reflection: Reflection::BlinnPhong,
     };
 
     fn folded(settings: &March, samples: &[Rgbs<f32>], delta_mm: f32) -> Light {

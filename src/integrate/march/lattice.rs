@@ -71,6 +71,14 @@ impl Cuts {
         }
     }
 
+    /// Samples at the ends of whole steps, the first of them even where the ray is shorter.
+    fn whole_steps(&self) -> Stretch {
+        // A sample that rounding puts beyond the exit is still on the border.
+        let more = ((self.length_mm - self.first_mm) / self.step_mm + 1e-9).floor().max(0.0);
+        let last_mm = self.first_mm + more * self.step_mm;
+        Stretch { first_mm: self.first_mm, last_mm, samples: 1 + more as usize, delta_mm: self.step_mm }
+    }
+
     /// The samples in the order they are visited, as at most four stretches.
     pub(super) fn stretches(&self, rule: SampleRule, order: Order) -> [Stretch; 4] {
         let n = self.intervals;
@@ -83,8 +91,15 @@ impl Cuts {
             delta_mm,
         };
         let inner = n.saturating_sub(2);
+        if rule == SampleRule::WholeSteps {
+            let mut whole = self.whole_steps();
+            if order == Order::BackToFront {
+                (whole.first_mm, whole.last_mm) = (whole.last_mm, whole.first_mm);
+            }
+            return [whole, Stretch::default(), Stretch::default(), Stretch::default()];
+        }
         let mut stretches = match rule {
-            SampleRule::Left | SampleRule::Midpoint => {
+            SampleRule::Left | SampleRule::Midpoint | SampleRule::WholeSteps => {
                 let place = |i: usize| if rule == SampleRule::Left { self.at(i) } else { middle(i) };
                 let one = |i: usize, samples: usize| stretch(place(i), place(i), samples, length(i));
                 let between = stretch(place(1), place(n.max(2) - 2), inner, self.step_mm);
@@ -169,6 +184,17 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn whole_steps_end_where_the_next_would_leave_the_volume() {
+        let places = |cuts: Cuts, order| samples(cuts, SampleRule::WholeSteps, order);
+        let forwards = places(Cuts::from_first(2.0, 2.0, 7.0), Order::FrontToBack);
+        assert_eq!(forwards, [(2.0, 2.0), (4.0, 2.0), (6.0, 2.0)], "nothing at the entry, and nothing for the rest");
+        let backwards = places(Cuts::from_first(2.0, 2.0, 7.0), Order::BackToFront);
+        assert_eq!(backwards, [(6.0, 2.0), (4.0, 2.0), (2.0, 2.0)]);
+        assert_eq!(places(Cuts::from_first(2.0, 2.0, 6.0), Order::FrontToBack).len(), 3, "the exit itself is inside");
+        assert_eq!(places(Cuts::from_first(2.0, 2.0, 0.5), Order::FrontToBack), [(2.0, 2.0)], "one in any case");
     }
 
     #[test]

@@ -65,7 +65,7 @@ impl<V: Voxel, K: Spacing, C: ByPlace, S: Shader> Medium for Classified<'_, V, K
         if optics == [0.0; 4] {
             return self.shader.space();
         }
-        let gradient = || self.units.per_mm(self.field.gradient_per_index(&cell));
+        let gradient = || self.units.per_mm(self.shader.gradient_per_index(&self.field, position, &cell));
         self.shader.shade(aim, optics, &Spot { cell, distance_mm }, gradient)
     }
 

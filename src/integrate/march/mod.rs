@@ -16,6 +16,7 @@ mod kernel;
 mod lattice;
 mod medium;
 mod number;
+mod phong;
 mod probe;
 mod surfaces;
 mod voxels;
@@ -25,6 +26,7 @@ pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
 pub(super) use medium::Classified;
 pub(super) use number::show_number;
+pub(super) use phong::VtkPhong;
 pub(super) use surfaces::show_surfaces;
 pub(super) use voxels::AtVoxels;
 

@@ -95,7 +95,9 @@ impl Of<'_> {
     ) -> Rendered {
         match self.settings.rule {
             SampleRule::Trapezoid => self.render(probe, Integral::<true> { empty_space }, number),
-            SampleRule::Left | SampleRule::Midpoint => self.render(probe, Integral::<false> { empty_space }, number),
+            SampleRule::Left | SampleRule::Midpoint | SampleRule::WholeSteps => {
+                self.render(probe, Integral::<false> { empty_space }, number)
+            }
         }
     }
 

@@ -13,8 +13,8 @@ use super::{Check, join};
 use crate::error::Result;
 use crate::spec::source::Source;
 use crate::spec::{
-    AttenuationSpec, Bits, ImageSpec, IntegrateSpec, LayerSpec, MarchSpec, OrderName, PhantomSpec, Pipeline,
-    ValuesName, VolumeSpec,
+    AttenuationSpec, Bits, CompatibilityName, ImageSpec, IntegrateSpec, LatticeName, LayerSpec, MarchSpec, OrderName,
+    PhantomSpec, Pipeline, RuleName, ValuesName, VolumeSpec,
 };
 use crate::transfer::attenuation::ENERGIES_KEV;
 
@@ -128,7 +128,7 @@ fn check_integrate(check: Check<'_>, integrate: &IntegrateSpec) -> Result<()> {
 }
 
 fn check_march(check: Check<'_>, march: &MarchSpec) -> Result<()> {
-    let path = |key| join("integrate.march", key);
+    let path = |key: &str| join("integrate.march", key);
     if march.step_mm.is_some() {
         check.exactly_one("integrate.march", &[("step_mm", true), ("step_voxels", march.step_voxels.is_some())])?;
     }
@@ -138,6 +138,20 @@ fn check_march(check: Check<'_>, march: &MarchSpec) -> Result<()> {
     let termination = march.termination_transmittance;
     let termination_path = path("termination_transmittance");
     check.require(&termination_path, termination.is_none_or(|t| (0.0..1.0).contains(&t)), "at least 0 and below 1")?;
+    let vtk = march.compatibility == Some(CompatibilityName::Vtk);
+    let whole_steps = march.rule == Some(RuleName::WholeSteps) || (vtk && march.rule.is_none());
+    let why = "a table is made for one length of step: set rule: whole-steps";
+    check.unread(&path("table"), march.table.is_some() && !whole_steps, why)?;
+    let planes = march.lattice == Some(LatticeName::ViewPlanes);
+    check.unread(&path("lattice"), planes && whole_steps, "whole steps begin at each ray's entry")?;
+    if let Some(table) = &march.table {
+        for (key, entries) in [("values", table.values), ("gradients", table.gradients)] {
+            let within = entries.is_none_or(|n| (2..=65_536).contains(&n));
+            check.require(&path(&format!("table.{key}")), within, "from 2 to 65536 entries")?;
+        }
+        let within = table.uncorrected_opacity.is_none_or(|a| (0.0..=1.0).contains(&a));
+        check.require(&path("table.uncorrected_opacity"), within, "an opacity, 0 to 1")?;
+    }
     let backwards = march.order == Some(OrderName::BackToFront);
     check.unread(&termination_path, termination.is_some() && backwards, "only front-to-back rays can stop early")
 }

@@ -1,12 +1,24 @@
 //! How much two pictures differ, in linear premultiplied values.
 
+mod comparison;
+mod delta_e;
+mod flip;
+mod ssim;
+
+pub use comparison::{Comparison, compare_as_seen};
+pub use delta_e::delta_e_2000;
+pub use flip::{PIXELS_PER_DEGREE, flip};
+pub use ssim::ssim;
+
+use serde::Serialize;
+
 use super::Image;
 use crate::error::{Error, Fault, Result};
 
 /// How much two pictures differ. Arrays are red, green, blue and alpha.
 ///
 /// A difference that is not a number counts as infinite: a NaN is never within a tolerance.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Difference {
     /// Largest absolute difference of each channel.
     pub max_abs: [f64; 4],
@@ -21,7 +33,7 @@ pub struct Difference {
 }
 
 /// A pixel that differs most.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct WorstPixel {
     /// Column from the left.
     pub column: usize,
@@ -83,10 +95,33 @@ pub fn compare(a: &Image, b: &Image, tolerance: f64) -> Result<Difference> {
     Ok(Difference { max_abs, rms: squares.map(|s| (s / pixels as f64).sqrt()), pixels_over, pixels, worst })
 }
 
+/// Per pixel, the largest absolute difference of its channels.
+pub(super) fn largest_per_pixel<'a>(a: &'a Image, b: &'a Image) -> impl Iterator<Item = f64> + 'a {
+    let largest = |(p, q): (&[f32; 4], &[f32; 4])| p.iter().zip(q).map(|(&x, &y)| distance(x, y)).fold(0.0, f64::max);
+    a.pixels().iter().zip(b.pixels()).map(largest)
+}
+
 /// Absolute difference; infinite if it is not a number.
 fn distance(a: f32, b: f32) -> f64 {
     let off = (f64::from(a) - f64::from(b)).abs();
     if off.is_nan() { f64::INFINITY } else { off }
+}
+
+/// Two pictures of smooth and busy parts by formula, for metrics whose values another program has computed.
+#[cfg(test)]
+fn test_pictures() -> (Image, Image) {
+    let (width, height) = (48, 40);
+    let pixel = |i: usize, shift: f64| {
+        let (x, y) = ((i % width) as f64, (i / width) as f64);
+        let wave = |k: f64| 0.5 + 0.45 * (0.09 * k * (x + shift) + 0.05 * y * k).sin();
+        let alpha = 0.25 + 0.75 * (x / width as f64);
+        let dot = if (x - 20.0).hypot(y - 15.0 - shift) < 4.0 { 0.3 } else { 0.0 };
+        [wave(1.0) * alpha, (wave(2.7) - dot).max(0.0) * alpha, wave(5.1) * alpha, alpha - 0.1 * shift]
+            .map(|v| v as f32)
+    };
+    let picture =
+        |shift: f64| Image::from_pixels(width, height, (0..width * height).map(|i| pixel(i, shift)).collect());
+    (picture(0.0), picture(0.8))
 }
 
 #[cfg(test)]

@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+"""Renders the scene beside this script with VTK. Written by `pellucid export-vtk`; needs vtk and numpy.
+
+    python render.py                       a picture.png beside the script, sRGB, as VTK displays it
+    python render.py --output picture.npy  linear premultiplied RGBA in f32, top row first, free of 8-bit rounding
+    python render.py --mapper cpu          by the fixed-point mapper (transfer functions of the value alone)
+    python render.py --show                in a window
+
+scene.json has the camera, the lights, the grid and the step; the arrays have the values, the transfer function (straight
+linear colour and extinction per mm) and, for 2D transfer functions, the gradient magnitude.
+"""
+
+import argparse
+import ctypes
+import json
+import os
+import pathlib
+
+import numpy as np
+
+arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+arguments.add_argument("--output", type=pathlib.Path)
+arguments.add_argument("--mapper", choices=("gpu", "cpu"), default="gpu")
+arguments.add_argument("--step-mm", type=float, help="distance between samples in place of the scene's")
+arguments.add_argument("--bits", type=int, choices=(8, 32), default=32, help="of the buffer that VTK draws into")
+arguments.add_argument("--show", action="store_true", help="open a window")
+arguments.add_argument("--facts", action="store_true", help="print versions and settings as JSON")
+arguments = arguments.parse_args()
+
+if not arguments.show:
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+
+import vtkmodules.vtkInteractionStyle  # noqa: E402,F401
+import vtkmodules.vtkRenderingOpenGL2  # noqa: E402,F401
+import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: E402,F401
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
+from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkUnsignedCharArray, vtkVersion  # noqa: E402
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPiecewiseFunction  # noqa: E402
+from vtkmodules.vtkCommonMath import vtkMatrix4x4  # noqa: E402
+from vtkmodules.vtkRenderingCore import (  # noqa: E402
+    vtkColorTransferFunction,
+    vtkLight,
+    vtkRenderer,
+    vtkRenderWindow,
+    vtkRenderWindowInteractor,
+    vtkVolume,
+    vtkVolumeProperty,
+)
+from vtkmodules.vtkRenderingOpenGL2 import vtkTextureObject  # noqa: E402
+from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper  # noqa: E402
+from vtkmodules.vtkRenderingVolumeOpenGL2 import vtkOpenGLGPUVolumeRayCastMapper  # noqa: E402
+
+# Lengths along a ray in which the table's opacities are given.
+UNIT_MM = 1.0
+
+here = pathlib.Path(__file__).resolve().parent
+scene = json.loads((here / "scene.json").read_text())
+step_mm = arguments.step_mm or scene["step_mm"]
+two_d = scene["transfer_function"]["dimensions"] == 2
+width, height = scene["camera"]["size"]
+
+
+def load(name):
+    return np.load(here / f"{name}.npy")
+
+
+def image():
+    """The values on their lattice, with the gradient magnitude as a second array where it is read."""
+    values = load("volume")
+    data = vtkImageData()
+    data.SetDimensions(values.shape[::-1])
+    data.SetSpacing(scene["spacing_mm"])
+    arrays = [("values", values)] + ([("gradient_magnitude", load("gradient_magnitude"))] if two_d else [])
+    for name, array in arrays:
+        array = numpy_to_vtk(array.ravel(), deep=True)
+        array.SetName(name)
+        data.GetPointData().AddArray(array)
+    data.GetPointData().SetActiveScalars("values")
+    return data, (float(values.min()), float(values.max()))
+
+
+def transfer_function(appearance, value_range):
+    table = load("transfer_function").astype(np.float64)
+    color, extinction = table[..., :3], table[..., 3]
+    if two_d:
+        # VTK does not correct the opacities of a 2D transfer function for the step.
+        rgba = np.concatenate([color, -np.expm1(-extinction * step_mm)[..., None]], axis=-1)
+        texture = vtkImageData()
+        texture.SetDimensions(table.shape[1], table.shape[0], 1)
+        texture.GetPointData().SetScalars(numpy_to_vtk(rgba.astype(np.float32).reshape(-1, 4), deep=True))
+        appearance.SetTransferFunctionModeTo2D()
+        appearance.SetTransferFunction2D(texture)
+        return
+    low, high = value_range
+    opacity, colors = vtkPiecewiseFunction(), vtkColorTransferFunction()
+    count = table.shape[1]
+    opacity.BuildFunctionFromTable(low, high, count, (-np.expm1(-extinction[0] * UNIT_MM)).copy())
+    colors.BuildFunctionFromTable(low, high, count, color[0].ravel().copy())
+    appearance.SetScalarOpacity(opacity)
+    appearance.SetColor(colors)
+    appearance.SetScalarOpacityUnitDistance(UNIT_MM)
+
+
+def lights(renderer):
+    """A headlight alone is VTK's default; others are placed in the patient."""
+    written = scene["shading"]["lights"] if scene["shading"] else []
+    if not written:
+        return
+    renderer.SetTwoSidedLighting(scene["shading"]["two_sided"])
+    renderer.AutomaticLightCreationOff()
+    renderer.RemoveAllLights()
+    for entry in written:
+        light = vtkLight()
+        light.PositionalOff()
+        light.SetColor(entry["color"])
+        if entry["towards"] is None:
+            light.SetLightTypeToHeadlight()
+        else:
+            light.SetLightTypeToSceneLight()
+            light.SetFocalPoint(0, 0, 0)
+            light.SetPosition(entry["towards"])
+        renderer.AddLight(light)
+
+
+def aim(camera, bounds):
+    given = scene["camera"]
+    position, forward = np.array(given["position_mm"]), np.array(given["forward"])
+    corners = np.array([[bounds[i], bounds[2 + j], bounds[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+    depths = (corners - position) @ forward
+    camera.SetPosition(position)
+    camera.SetFocalPoint(position + forward * max(depths.mean(), 1.0))
+    camera.SetViewUp(given["up"])
+    if given["projection"] == "parallel":
+        camera.ParallelProjectionOn()
+        camera.SetParallelScale(0.5 * given["fov_degrees_or_height_mm"])
+    else:
+        camera.SetViewAngle(given["fov_degrees_or_height_mm"])
+    # A near plane that touches the volume would move the samples.
+    around = np.ptp(depths)
+    camera.SetClippingRange(max(depths.min() - around, 0.01 * max(depths.max(), 1.0)), depths.max() + around)
+
+
+def mapper(data):
+    ray_cast = vtkOpenGLGPUVolumeRayCastMapper() if arguments.mapper == "gpu" else vtkFixedPointVolumeRayCastMapper()
+    ray_cast.SetInputData(data)
+    ray_cast.SetBlendModeToComposite()
+    ray_cast.AutoAdjustSampleDistancesOff()
+    ray_cast.SetImageSampleDistance(1.0)
+    ray_cast.LockSampleDistanceToInputSpacingOff()
+    ray_cast.SetSampleDistance(step_mm)
+    if arguments.mapper == "gpu":
+        ray_cast.UseJitteringOff()
+        ray_cast.SetMaxMemoryInBytes(1 << 36)
+        if two_d:
+            ray_cast.SetTransfer2DYAxisArray("gradient_magnitude")
+    else:
+        ray_cast.SetInteractiveSampleDistance(step_mm)
+    return ray_cast
+
+
+def float_buffer(window):
+    """Gives the window's buffer 32-bit floats: 8 bits would hide every error below 2e-3."""
+    texture = vtkTextureObject()
+    texture.SetContext(window)
+    texture.Allocate2D(width, height, 4, VTK_FLOAT)
+    buffer = window.GetRenderFramebuffer()
+    window.MakeCurrent()
+    buffer.SaveCurrentBindingsAndBuffers()
+    buffer.Bind()
+    buffer.AddColorAttachment(0, texture)
+    buffer.ActivateBuffer(0)
+    buffer.RestorePreviousBindingsAndBuffers()
+    return texture
+
+
+def fixed_point_pixels(ray_cast):
+    """The 15-bit picture of the fixed-point mapper: the one that it displays is magnified by a pixel and blurred."""
+    picture = ray_cast.GetRayCastImage()
+    memory, used, origin = picture.GetImageMemorySize(), picture.GetImageInUseSize(), picture.GetImageOrigin()
+    address = int(picture.GetImage().split("_")[1], 16)
+    raw = (ctypes.c_uint16 * (4 * memory[0] * memory[1])).from_address(address)
+    raw = np.frombuffer(raw, np.uint16).reshape(memory[1], memory[0], 4)
+    pixels = np.zeros((height, width, 4), np.float32)
+    rows, columns = min(used[1], height - origin[1]), min(used[0], width - origin[0])
+    pixels[origin[1] : origin[1] + rows, origin[0] : origin[0] + columns] = raw[:rows, :columns] / 32767.0
+    return pixels
+
+
+def pixels_of(window, ray_cast, texture):
+    if arguments.mapper == "cpu":
+        return fixed_point_pixels(ray_cast)
+    if texture is None:
+        bytes_ = vtkUnsignedCharArray()
+        window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, bytes_)
+        return (vtk_to_numpy(bytes_).reshape(height, width, 4) / 255.0).astype(np.float32)
+    pixels = np.zeros((height, width, 4), np.float32)
+    texture.Download().Download2D(VTK_FLOAT, pixels, (width, height), 4, (0, 0))
+    return pixels
+
+
+def srgb_bytes(pixels):
+    """What a display shows: straight alpha, sRGB."""
+    alpha = pixels[..., 3:]
+    linear = np.clip(np.divide(pixels[..., :3], alpha, out=np.zeros_like(pixels[..., :3]), where=alpha > 0), 0, 1)
+    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
+    return (np.concatenate([encoded, np.clip(alpha, 0, 1)], axis=-1) * 255 + 0.5).astype(np.uint8)
+
+
+def write(path, pixels):
+    if path.suffix == ".npy":
+        np.save(path, np.ascontiguousarray(pixels))
+        return
+    from vtkmodules.vtkIOImage import vtkPNGWriter
+
+    picture = vtkImageData()
+    picture.SetDimensions(width, height, 1)
+    picture.GetPointData().SetScalars(numpy_to_vtk(srgb_bytes(pixels)[::-1].reshape(-1, 4).copy(), deep=True))
+    writer = vtkPNGWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(picture)
+    writer.Write()
+
+
+def main():
+    if two_d and arguments.mapper == "cpu":
+        raise SystemExit("VTK's fixed-point mapper draws nothing with a 2D transfer function")
+    data, value_range = image()
+    appearance = vtkVolumeProperty()
+    appearance.SetInterpolationTypeToLinear()
+    transfer_function(appearance, value_range)
+    shading = scene["shading"]
+    appearance.SetShade(shading is not None)
+    if shading:
+        appearance.SetAmbient(shading["ambient"])
+        appearance.SetDiffuse(shading["diffuse"])
+        appearance.SetSpecular(shading["specular"])
+        appearance.SetSpecularPower(shading["shininess"])
+
+    ray_cast = mapper(data)
+    volume = vtkVolume()
+    volume.SetMapper(ray_cast)
+    volume.SetProperty(appearance)
+    motion = vtkMatrix4x4()
+    for row in range(3):
+        for column in range(4):
+            motion.SetElement(row, column, scene["motion"][row][column])
+    volume.SetUserMatrix(motion)
+
+    renderer = vtkRenderer()
+    renderer.SetBackground(0, 0, 0)
+    renderer.AddVolume(volume)
+    lights(renderer)
+    window = vtkRenderWindow()
+    window.SetMultiSamples(0)
+    window.SetSize(width, height)
+    window.SetOffScreenRendering(not arguments.show)
+    window.AddRenderer(renderer)
+    aim(renderer.GetActiveCamera(), volume.GetBounds())
+    texture = None
+    if arguments.bits == 32 and arguments.mapper == "gpu" and not arguments.show:
+        volume.VisibilityOff()
+        window.Render()
+        volume.VisibilityOn()
+        texture = float_buffer(window)
+    window.Render()
+    if arguments.show:
+        interactor = vtkRenderWindowInteractor()
+        interactor.SetRenderWindow(window)
+        interactor.Start()
+        return
+
+    pixels = pixels_of(window, ray_cast, texture)[::-1].astype(np.float64)
+    if scene["background"] is not None:
+        pixels[..., :3] += (1 - pixels[..., 3:]) * np.array(scene["background"])
+        pixels[..., 3] = 1
+    path = arguments.output or here / "picture.png"
+    write(path, pixels.astype(np.float32))
+    if arguments.facts:
+        lines = [line.split(": ", 1) for line in window.ReportCapabilities().split("\n") if "OpenGL" in line]
+        capabilities = {line[0].strip(): line[1].strip() for line in lines if len(line) == 2}
+        print(
+            json.dumps(
+                {
+                    "vtk": vtkVersion.GetVTKVersion(),
+                    "renderer": capabilities.get("OpenGL renderer string", "unknown"),
+                    "mapper": ray_cast.GetClassName(),
+                    "step_mm": step_mm,
+                    "bits": arguments.bits if arguments.mapper == "gpu" else 15,
+                }
+            )
+        )
+    else:
+        print(path)
+        for note in scene["notes"]:
+            print("note:", note)
+
+
+main()

@@ -1,0 +1,270 @@
+#!/usr/bin/env python3
+"""What pellucid takes VTK's conventions to be, each by an experiment with live VTK: fails where VTK does otherwise.
+
+    conventions.py [PELLUCID]        with the program, also the experiments on scenes
+
+`march: { compatibility: vtk }` and the script of `pellucid export-vtk` are built on these.
+"""
+
+import json
+import pathlib
+import sys
+import tempfile
+
+import numpy as np
+
+from bridge import ROOT, Pellucid, render_vtk, scenes
+
+SCRIPT = ROOT / "src/interchange/vtk/render.py"
+# Voxels along an axis of the boxes below, of 1 mm.
+N = 9
+failures = []
+
+
+def holds(what, found, expected, within):
+    off = float(np.max(np.abs(np.asarray(found) - np.asarray(expected))))
+    verdict = "" if off <= within else "FAILED "
+    print(f"{verdict}{what}: found {np.round(found, 6)}, expected {np.round(expected, 6)} within {within:g}")
+    if off > within:
+        failures.append(what)
+
+
+def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, mapper="gpu", dims=(N, N, N), rewrite=None, **scene):
+    """VTK's picture of a box seen along +x by parallel rays; its middle pixel's ray is 8 mm long."""
+    z, y, x = np.meshgrid(*[np.arange(n, dtype=np.float32) for n in reversed(dims)], indexing="ij")
+    values = {None: y, "x": x}.get(values, values) if isinstance(values, (str, type(None))) else values(x, y, z)
+    extinction = np.atleast_2d(np.asarray(extinction_per_mm, np.float32))
+    table = np.zeros((*extinction.shape, 4), np.float32)
+    table[..., :3] = 1 if colors is None else colors
+    table[..., 3] = extinction
+    middle = [0.5 * (n - 1) for n in dims]
+    camera = {
+        "position_mm": [-1000 + middle[0], middle[1], middle[2]],
+        "forward": [1, 0, 0],
+        "up": [0, 0, 1],
+        "projection": "parallel",
+        "fov_degrees_or_height_mm": 2,
+        "size": [5, 5],
+    }
+    described = {
+        "spacing_mm": [1, 1, 1],
+        "motion": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]],
+        "step_mm": step_mm,
+        "transfer_function": {"dimensions": 1 if gradient is None else 2},
+        "camera": camera,
+        "background": None,
+        "shading": None,
+        "notes": [],
+    } | scene
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        np.save(folder / "volume.npy", values.astype(np.float32))
+        np.save(folder / "transfer_function.npy", table)
+        if gradient is not None:
+            np.save(folder / "gradient_magnitude.npy", gradient(x, y, z).astype(np.float32))
+        (folder / "scene.json").write_text(json.dumps(described))
+        script = SCRIPT.read_text()
+        if rewrite is not None:
+            script = script.replace("SetSampleDistance(step_mm)", f"SetSampleDistance({rewrite})")
+        (folder / "render.py").write_text(script)
+        render_vtk(folder, mapper, folder / "picture.npy")
+        return np.load(folder / "picture.npy")[2, 2].astype(np.float64)
+
+
+def absorbed(extinction_per_mm, mm):
+    return -np.expm1(-extinction_per_mm * mm)
+
+
+def sampling():
+    constant = [0.1, 0.1]
+    for step, samples in ((3.0, 2), (0.75, 10), (9.5, 1)):
+        found = box(constant, step)[3]
+        holds(f"samples at whole steps only, the first a step in: {samples} of {step} mm", found, absorbed(0.1, samples * step), 2e-6)
+    # A ramp along the ray: 2, 4, 6 and 8 mm are read, 0 mm is not.
+    ramp = np.linspace(0, 0.08, 4097)
+    at = np.array([2, 4, 6, 8]) / 8 * 4097 - 0.5
+    read = np.interp(at, np.arange(4097), ramp)
+    holds("the values at the ends of steps", box(ramp, 2.0, values="x")[3], absorbed(read.sum(), 2.0), 1e-5)
+
+
+def opacity():
+    # Not a divisor of 8 mm: whether a sample at the exit itself counts is a matter of rounding.
+    for step in (3.0, 1.5, 0.3):
+        length = int(8 / step) * step
+        holds(f"1D opacities are corrected for a step of {step} mm", box([0.05, 0.05], step)[3], absorbed(0.05, length), 3e-6)
+    faint, found = 9e-5, box([9e-5, 9e-5], 0.3)[3]
+    holds("but not those of up to 1e-4 per mm: 26 steps of 0.3 mm count as 26 mm", found, absorbed(faint, 26), 1e-6)
+    dense = box([1.0, 1.0], 1.0)[3]
+    holds("a ray stops when its opacity is above 1 - 1/255: after 6 mm", dense, absorbed(1.0, 6), 2e-6)
+
+
+def textures():
+    # Four texels over the values 0 to 8: a value v is looked up at v/8 * 4 - 1/2, clamped.
+    entries = np.array([0.0, 0.01, 0.03, 0.1])
+    # Opacities of 1 mm are what is interpolated.
+    of_step = absorbed(entries, 1.0)
+    wide = np.interp(np.arange(1024) * 3 / 1023, np.arange(4), of_step)
+    # Texels are 1024 at least: the script's table is resampled to that many.
+    at = 4 / 8 * 1024 - 0.5
+    alpha = np.interp(at, np.arange(1024), wide)
+    holds("a 1D look-up is at u n - 1/2 of n = 1024 texels", box(entries, 1.0)[3], 1 - (1 - alpha) ** 8, 1e-6)
+
+
+def gradients():
+    magnitude = lambda x, y, z: 10 * z  # noqa: E731
+    rows = np.linspace(0, 0.1, 1024)[:, None] * np.ones((1, 1024))
+    at = 4 / 8 * 1024 - 0.5
+    expected = absorbed(np.interp(at, np.arange(1024), rows[:, 0]), 8)
+    holds("a second channel is the y axis of a 2D transfer function, over its own range", box(rows, 1.0, gradient=magnitude)[3], expected, 3e-5)
+    apart = np.abs(two_d_on_the_cpu(0.0) - two_d_on_the_cpu(0.5)).max()
+    holds("the CPU mapper does not read a 2D transfer function: transparent and opaque look alike", apart, 0.0, 0.0)
+    holds("2D opacities are not corrected for the step: half the step, twice the depth", uncorrected_2d(), 2.0, 0.15)
+
+
+def uncorrected_2d():
+    """Optical depth at steps of 0.35 mm over that at 0.7 mm, of the opacities that the script corrects for 0.7 mm."""
+    depth = [-np.log1p(-box(np.full((2, 2), 0.05), 0.7, gradient=lambda x, y, z: z, rewrite=step)[3]) for step in (0.7, 0.35)]
+    return depth[1] / depth[0]
+
+
+def two_d_on_the_cpu(opacity):
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkVolume, vtkVolumeProperty
+    from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper
+    import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
+
+    data, texture = vtkImageData(), vtkImageData()
+    data.SetDimensions(N, N, N)
+    data.GetPointData().SetScalars(numpy_to_vtk(np.arange(N**3, dtype=np.float32), deep=True))
+    texture.SetDimensions(1024, 1024, 1)
+    rgba = np.full((1024 * 1024, 4), opacity, np.float32)
+    texture.GetPointData().SetScalars(numpy_to_vtk(rgba, deep=True))
+    mapper, appearance, volume = vtkFixedPointVolumeRayCastMapper(), vtkVolumeProperty(), vtkVolume()
+    mapper.SetInputData(data)
+    appearance.SetTransferFunctionModeTo2D()
+    appearance.SetTransferFunction2D(texture)
+    volume.SetMapper(mapper)
+    volume.SetProperty(appearance)
+    renderer, window = vtkRenderer(), vtkRenderWindow()
+    renderer.AddVolume(volume)
+    window.SetOffScreenRendering(True)
+    window.SetSize(32, 32)
+    window.AddRenderer(renderer)
+    window.Render()
+    from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    pixels = vtkUnsignedCharArray()
+    window.GetRGBACharPixelData(0, 0, 31, 31, 0, pixels)
+    return vtk_to_numpy(pixels).astype(int)
+
+
+def lights():
+    """The normal under scene lights: `S Vt R g` in place of `R V g`, right for cubes along the axes only."""
+    towards = np.array([-0.6, 0.48, 0.64])
+    gradient = np.array([0.48, -0.6, 0.64])
+
+    def lit(dims):
+        shading = {
+            "ambient": 0,
+            "diffuse": 1,
+            "specular": 0,
+            "shininess": 1,
+            "two_sided": True,
+            "lights": [{"towards": towards.tolist(), "color": [1, 1, 1]}],
+        }
+        ramp = lambda x, y, z: gradient[0] * x + gradient[1] * y + gradient[2] * z  # noqa: E731
+        # Steps of 3 mm keep the differences away from the border.
+        red, _, _, alpha = box([0.05, 0.05], 3.0, values=ramp, dims=dims, shading=shading)
+        return red / alpha
+
+    holds("a cube is lit by the cosine", lit((N, N, N)), abs(towards @ gradient), 1e-4)
+    sides = np.array([8, 8, 32])
+    # Seen along +x with z up: right is -y, up is z, and the camera's third axis is -x.
+    turn = np.array([[0, -1, 0], [0, 0, 1], [-1, 0, 0]])
+    # Differences reach n/(n - 1) voxels to either side along an axis of n voxels.
+    normal = sides * (turn @ (gradient * (1 + 1 / sides)))
+    wrong = abs((turn @ towards) @ normal) / np.linalg.norm(normal)
+    holds("a box that is no cube by another", lit((N, N, 33)), wrong, 1e-4)
+    assert abs(wrong - abs(towards @ gradient)) > 0.1, "the experiment tells them apart"
+
+
+def fixed_point():
+    found = box([0.05, 0.05], 1.0, mapper="cpu")[3]
+    holds("the CPU mapper counts in 1/32767", found * 32767, round(found * 32767), 1e-3)
+
+
+def rounding(pellucid):
+    """The scenes where pellucid's march is furthest from VTK, again in numpy: with positions that are added up in f32 as
+    VTK's shader does, and with exact ones."""
+    for scene in scenes(["head-thin-shells", "head-fine"]):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            described = pellucid.export(scene, folder)
+            render_vtk(folder, "gpu", folder / "vtk.npy")
+            vtk = np.load(folder / "vtk.npy")
+            # Every fifth row and column.
+            height, width, _ = vtk.shape
+            off = []
+            for row in range(0, height, 5):
+                for column in range(0, width, 5):
+                    if vtk[row, column, 3] == 0:
+                        continue
+                    exact, added = (march(described, folder, column, row, kind) for kind in (np.float64, np.float32))
+                    off.append([255 * np.abs(ray - vtk[row, column]).max() for ray in (exact, added)])
+            exact, added = np.sqrt(np.mean(np.square(off), axis=0))
+            holds(f"{scene.name}: RMS from VTK in 1/255, {exact:.4f} by exact positions, {added:.4f} by positions added up in f32", added / exact, 0.0, 0.5)
+
+
+def march(described, folder, column, row, kind):
+    """VTK's shader for one ray, unlit and 1D, with positions in a floating-point type."""
+    values = np.load(folder / "volume.npy").astype(np.float64)
+    table = np.load(folder / "transfer_function.npy")[0].astype(np.float64)
+    step, camera = described["step_mm"], described["camera"]
+    width, height = camera["size"]
+    forward, up = np.array(camera["forward"]), np.array(camera["up"])
+    slope = np.tan(np.radians(camera["fov_degrees_or_height_mm"]) / 2)
+    across = (2 * column + 1 - width) / height * slope * np.cross(forward, up)
+    direction = forward + across + (height - 2 * row - 1) / height * slope * up
+    direction /= np.linalg.norm(direction)
+    motion = np.array(described["motion"])
+    origin = motion[:, :3].T @ (np.array(camera["position_mm"]) - motion[:, 3])
+    direction = motion[:, :3].T @ direction
+    dims, spacing = np.array(values.shape[::-1]), np.array(described["spacing_mm"])
+    faces = np.stack([-origin / direction, ((dims - 1) * spacing - origin) / direction])
+    entry = faces.min(0).max()
+    # Texture coordinates: the middle of voxel i is at (i + 1/2)/n.
+    first = kind(((origin + entry * direction) / spacing + 0.5) / dims)
+    each = kind(step * direction / spacing / dims)
+    low, high = values.min(), values.max()
+    opacity = absorbed(table[:, 3], 1.0)
+    opacity = np.where(opacity > 1e-4, 1 - (1 - opacity) ** step, opacity)
+    color, alpha, position = np.zeros(3), 0.0, first + each
+    last, before = kind((dims - 0.5) / dims), kind(0.5 / dims)
+    while True:
+        index = np.clip(position.astype(np.float64) * dims - 0.5, 0, dims - 1.000001)
+        i, u = index.astype(int), index % 1
+        corner = values[i[2] : i[2] + 2, i[1] : i[1] + 2, i[0] : i[0] + 2]
+        value = np.einsum("kji,k,j,i", corner, [1 - u[2], u[2]], [1 - u[1], u[1]], [1 - u[0], u[0]])
+        at = np.clip((value - low) / (high - low) * len(table) - 0.5, 0, len(table) - 1)
+        a = np.interp(at, np.arange(len(table)), opacity)
+        c = [np.interp(at, np.arange(len(table)), table[:, channel]) for channel in range(3)]
+        color, alpha = color + (1 - alpha) * a * np.array(c), alpha + (1 - alpha) * a
+        position = position + each
+        outside = (np.maximum(each, 0) * (position - last) > 0) | (np.minimum(each, 0) * (position - before) > 0)
+        if alpha > 1 - 1 / 255 or outside.any():
+            break
+    return np.array([*color, alpha])
+
+
+def main():
+    for experiment in (sampling, opacity, textures, gradients, lights, fixed_point):
+        experiment()
+    if len(sys.argv) > 1:
+        rounding(Pellucid(sys.argv[1]))
+    if failures:
+        raise SystemExit(f"{len(failures)} conventions of VTK are not what pellucid takes them for")
+
+
+main()

@@ -1,0 +1,63 @@
+//! What `pellucid export-vtk` writes.
+
+use pellucid::interchange::vtk;
+use pellucid::io::npy;
+use pellucid::pipeline::{self, Options};
+use pellucid::{Error, Fault};
+
+use super::spec;
+
+fn exported(name: &str, overrides: &[&str]) -> Result<tempfile::TempDir, Error> {
+    let spec = spec(name, overrides).expect("a scene without a scan");
+    let scan = pipeline::load(&spec, &pipeline::Options::default())?;
+    let plan = pipeline::plan(&spec, &scan, &Options::default())?;
+    let folder = tempfile::tempdir().expect("a folder");
+    vtk::export(folder.path(), &scan.volume, &plan)?;
+    Ok(folder)
+}
+
+fn names(folder: &tempfile::TempDir) -> Vec<String> {
+    let entries = std::fs::read_dir(folder.path()).expect("readable");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn the_gradient_magnitude_comes_along_where_it_is_read() {
+    let one_d = exported("balls-rotated", &[]).unwrap();
+    assert_eq!(names(&one_d), ["render.py", "scene.json", "transfer_function.npy", "volume.npy"]);
+    let two_d = exported("balls-rotated-2d", &[]).unwrap();
+    assert!(names(&two_d).contains(&"gradient_magnitude.npy".to_string()), "found {:?}", names(&two_d));
+    let shape = |name: &str| npy::read(&two_d.path().join(name)).expect("an array").0;
+    assert_eq!(shape("transfer_function.npy"), [1024, 4096, 4], "gradient, value, RGB and extinction");
+    assert_eq!(shape("volume.npy"), [20, 24, 28], "slices, rows, columns");
+}
+
+#[test]
+fn the_scene_says_where_vtk_cannot_follow() {
+    let folder = exported("head-lit", &["effects.shading.soft_gradient_hu_per_mm=20"]).unwrap();
+    let text = std::fs::read_to_string(folder.path().join("scene.json")).unwrap();
+    let scene: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let notes = scene["notes"].to_string();
+    assert!(notes.contains("Phong") && notes.contains("fade"), "found {notes}");
+    assert_eq!(scene["camera"]["size"], serde_json::json!([96, 96]));
+}
+
+#[test]
+fn the_table_is_the_transfer_function() {
+    let folder = exported("balls-rotated", &[]).unwrap();
+    let (shape, table) = npy::read(&folder.path().join("transfer_function.npy")).expect("an array");
+    assert_eq!(shape, [1, 4096, 4]);
+    let highest = table.chunks(4).map(|entry| entry[3]).fold(0.0, f32::max);
+    let expected = -(1.0_f32 - 0.4).ln();
+    assert!((highest - expected).abs() < 1e-6, "the extinction of 0.4 per mm: found {highest}, expected {expected}");
+}
+
+#[test]
+fn what_vtk_has_no_equal_of_is_refused() {
+    let fault = |overrides: &[&str]| exported("balls-rotated", overrides).err().map(|error| error.fault());
+    let projection = ["effects={ project: { show: maximum } }", "transfer_function=[]", "integrate={ exact: {} }"];
+    assert_eq!(fault(&projection), Some(Fault::Unsupported));
+}
