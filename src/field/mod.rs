@@ -15,6 +15,7 @@
 //!   interpolated vector is another function: it dips where neighbouring gradients disagree.)
 //! * *Macrocells* ([`Macrocells`]): lowest and highest stored value of blocks of 8³ cells, and likewise of the magnitude.
 
+mod chord;
 mod corners;
 mod gradient;
 mod macrocell;
@@ -24,6 +25,7 @@ mod spacing;
 mod trilinear;
 mod voxel;
 
+pub use chord::Chord;
 pub use corners::Corners;
 pub use gradient::GradientUnits;
 pub use macrocell::{BLOCK_CELLS, Macrocells};

@@ -5,7 +5,6 @@
 //! picture.
 
 mod atmosphere;
-mod chord;
 mod classify_voxels;
 mod empty_space;
 pub mod exact;

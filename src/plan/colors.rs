@@ -27,6 +27,19 @@ pub(super) fn resolve(spec: &Spec, volume: &VolumeInfo) -> Result<Option<RgbaEnc
         refuse(effects.project.is_some(), "effects.project", no_values)?;
         refuse(effects.surfaces.is_some(), "effects.surfaces", no_values)?;
         refuse(effects.shading.is_some(), "effects.shading", no_values)?;
+        let as_it_is = "the volume shows the light it has";
+        let changes = [
+            ("light", effects.light.is_some()),
+            ("depth_cue", effects.depth_cue.is_some()),
+            ("shadows", effects.shadows.is_some()),
+            ("scattering", effects.scattering.is_some()),
+            ("fog", effects.fog.is_some()),
+            ("haze", effects.haze.is_some()),
+            ("mask", effects.mask.is_some()),
+        ];
+        for (key, given) in changes {
+            refuse(given, &format!("effects.{key}"), as_it_is)?;
+        }
     } else {
         let values = "the volume has values, and no colours";
         refuse(pipeline.volume.opacity_length_mm.is_some(), "volume.opacity_length_mm", values)?;

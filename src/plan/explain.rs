@@ -18,6 +18,7 @@ pub fn explain(plan: &Plan) -> String {
     }
     let (when, most) = plan.peak();
     line(&mut text, "memory", &format!("{} at peak, while {when}", bytes(most)));
+    line(&mut text, "work", &plan.work.describe());
     text.push('\n');
     if !plan.layers.is_empty() {
         line(&mut text, "layers", &layer_names(plan));
@@ -153,6 +154,7 @@ pub fn explain_json(plan: &Plan) -> Value {
         "stages": plan.stages,
         "memory_bytes": plan.memory_bytes(),
         "memory_peak_while": plan.peak().0,
+        "work": plan.work,
         "colors": plan.colors.map(|RgbaEncoding { opacity_length_mm, color }| json!({
             "opacity_length_mm": opacity_length_mm,
             "encoding": match color {

@@ -22,6 +22,7 @@ mod stages;
 mod volume_info;
 mod voxels;
 mod warnings;
+mod work;
 
 pub use classification::{Classification, CleanStep, Tissue};
 use effects::{Resolved, Surroundings};
@@ -35,6 +36,7 @@ pub use output::{Format, Output};
 pub use stack::StackPlan;
 pub use stages::{Omission, Stage};
 pub use volume_info::{LabelInfo, Storage, VolumeInfo};
+pub use work::Work;
 
 use std::path::Path;
 
@@ -66,6 +68,8 @@ pub struct Plan {
     pub certify: Option<usize>,
     /// Most bytes held while the scan was read.
     pub reading_bytes: u64,
+    /// How much there is to do.
+    pub work: Work,
     /// What is computed, in order.
     pub stages: Vec<Stage>,
     /// What is not computed, and why.
@@ -125,10 +129,12 @@ impl Plan {
             output,
             certify: spec.pipeline.certify.map(|pixels| pixels as usize),
             reading_bytes: volume.reading_bytes,
+            work: Work { rays: 0, cells: 0, samples: None },
             stages: Vec::new(),
             not_computed: Vec::new(),
             warnings: Vec::new(),
         };
+        plan.work = work::expected(&plan.scene, &plan.method, &volume.grid);
         plan.stages = stages::computed(&plan, volume);
         plan.not_computed = stages::not_computed(&plan, spec, volume);
         plan.not_computed.extend(omitted);

@@ -24,10 +24,10 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
                  normalise.hu widens it"
             ));
         }
-        if shown(plan, volume).all(|tf| shows_nothing(tf, volume.value_range)) {
-            warnings
-                .push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
-        }
+    }
+    let is_dark = |tf| reads_transfer_function(&plan.scene) && shows_nothing(tf, volume.value_range);
+    if plan.colors.is_none() && shown(plan, volume).all(is_dark) {
+        warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
     }
     for label in mask::without_voxels(spec, volume) {
         warnings.push(format!("no voxel has the label {label} of effects.mask"));

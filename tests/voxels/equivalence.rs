@@ -93,6 +93,6 @@ fn colors_have_no_values_to_show() {
     for method in [Method::March(MARCH), Method::Reference] {
         let error = render(&volume, &lit, &method, &|_| ()).expect_err("there is no gradient to shade by");
         assert_eq!(error.fault(), Fault::Unsupported, "{error}");
-        assert!(error.to_string().contains("an RGBA volume has colours and no values"), "found {error}");
+        assert!(error.to_string().contains("an RGBA volume has no values"), "found {error}");
     }
 }

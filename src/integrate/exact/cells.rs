@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::super::chord::Chord;
+use crate::field::Chord;
 use crate::scene::{Clip, Ray, Scene};
 use crate::volume::{Grid, Slices, Volume};
 

@@ -3,10 +3,10 @@
 use super::composite::{self, Fold, Light};
 use super::lattice::{Cuts, Stretch};
 use super::medium::Medium;
+use crate::field::Chord;
 use crate::field::{Pace, Position};
 use crate::image::Image;
 use crate::integrate::Frame;
-use crate::integrate::chord::Chord;
 use crate::integrate::empty_space::{EmptySpace, Leap};
 use crate::integrate::tiles::{self, Tally};
 use crate::plan::{March, Order};

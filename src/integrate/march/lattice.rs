@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::jitter;
-use crate::integrate::chord::Chord;
+use crate::field::Chord;
 use crate::plan::{Lattice, March, Order, SampleRule};
 use crate::scene::Ray;
 

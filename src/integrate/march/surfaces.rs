@@ -6,8 +6,8 @@
 
 use super::lattice::{Cuts, Stretch};
 use crate::error::Result;
+use crate::field::Chord;
 use crate::field::{GradientUnits, Macrocells, Pace, Position, Trilinear, Voxel};
-use crate::integrate::chord::Chord;
 use crate::integrate::empty_space::{EmptySpace, Leap};
 use crate::integrate::tiles::{self, Radiance};
 use crate::integrate::{Frame, Rendered, Statistics};

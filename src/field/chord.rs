@@ -8,15 +8,15 @@ use crate::volume::Grid;
 /// The part of a ray inside the domain, clipped, in f64 and from its own entry, so that the distance of the camera costs no
 /// precision.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Chord {
+pub struct Chord {
     /// Entry, as a distance along the ray, mm.
-    pub(super) entry_mm: f64,
+    pub entry_mm: f64,
     /// Length inside the domain, mm; above 0.
-    pub(super) length_mm: f64,
+    pub length_mm: f64,
     /// Entry, as a continuous voxel index.
-    pub(super) entry_index: DVec3,
+    pub entry_index: DVec3,
     /// Direction, voxels per mm.
-    pub(super) index_per_mm: DVec3,
+    pub index_per_mm: DVec3,
 }
 
 impl Chord {
@@ -24,7 +24,7 @@ impl Chord {
     ///
     /// Slabs (Kay and Kajiya 1986) in index space, where the domain is a box whatever the shear. An axis the ray does not
     /// move on is a test of its own, so that 0 · ∞ cannot arise.
-    pub(super) fn new(grid: &Grid, clip: &Clip, ray: Ray) -> Option<Self> {
+    pub fn new(grid: &Grid, clip: &Clip, ray: Ray) -> Option<Self> {
         let to_index = grid.lps_mm_to_index();
         let origin = to_index.transform_point3(ray.origin_mm);
         let direction = to_index.transform_vector3(ray.direction);
@@ -53,7 +53,7 @@ impl Chord {
 
     /// The part inside the domain of a ray from a continuous index; `None` if it has no length. The entry is exact, so that a
     /// ray along the border does not leave it by rounding.
-    pub(super) fn from_index(grid: &Grid, entry_index: DVec3, direction: DVec3) -> Option<Self> {
+    pub fn from_index(grid: &Grid, entry_index: DVec3, direction: DVec3) -> Option<Self> {
         let index_per_mm = grid.lps_mm_to_index().transform_vector3(direction);
         let (low, high) = grid.index_bounds();
         let mut length_mm = f64::INFINITY;
@@ -70,7 +70,7 @@ impl Chord {
     }
 
     /// Continuous voxel index at a distance from the entry.
-    pub(super) fn index_at(&self, mm: f64) -> DVec3 {
+    pub fn index_at(&self, mm: f64) -> DVec3 {
         self.entry_index + mm * self.index_per_mm
     }
 }
