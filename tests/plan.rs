@@ -13,6 +13,7 @@ mod colors;
 mod demand;
 mod effects;
 mod explain;
+mod gallery;
 mod mask;
 mod method;
 mod shapes;

@@ -32,6 +32,9 @@ pub struct Omission {
     pub why: String,
 }
 
+/// Why most effects are not computed.
+pub(super) const NOT_NAMED: &str = "the pipeline does not name it";
+
 /// Cells along each axis of a block of macrocells.
 const BLOCK_CELLS: usize = 8;
 
@@ -266,12 +269,15 @@ pub(super) fn not_computed(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec
     for layer in plan.layers.iter().filter(|layer| layer.terms.is_empty()) {
         omissions.push(Omission { what: "layer", why: model::why_empty(layer, spec) });
     }
-    if clip::written(spec).is_some() && plan.scene.effects.clip.half_spaces.is_empty() {
-        omissions.push(Omission { what: "clipping", why: "effects.clip holds the whole volume".to_owned() });
+    if plan.scene.effects.clip.half_spaces.is_empty() {
+        let written = clip::written(spec).is_some();
+        let why = if written { "effects.clip holds the whole volume" } else { NOT_NAMED };
+        omissions.push(Omission { what: "clipping", why: why.to_owned() });
     }
-    if mask::written(spec).is_some() && plan.label_classes.is_none() {
-        let why = "all labels that occur show what the transfer function says".to_owned();
-        omissions.push(Omission { what: "mask", why });
+    if plan.label_classes.is_none() {
+        let written = mask::written(spec).is_some();
+        let why = if written { "all labels that occur show what the transfer function says" } else { NOT_NAMED };
+        omissions.push(Omission { what: "mask", why: why.to_owned() });
     }
     if plan.certify.is_none() {
         omissions.push(Omission { what: "certificate", why: "certify asks for no pixels".to_owned() });

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What effects cost a scene that does not ask for them: nothing, to the bit and to the instruction.
 
-    cost.py PELLUCID [--before OTHER_PELLUCID]
+    cost.py PELLUCID [--before OTHER_PELLUCID] [--only EFFECT …]
 
 For each effect one row: whether a pipeline that names it with a strength of 0 gives the same pixels as one that does not
 name it, whether one with some strength gives others (or the row would say nothing), and the instructions of the first
@@ -75,11 +75,13 @@ def render(program, path):
     return sidecar["picture"]["pixels_sha256"], instructions
 
 
-def effects_table(program, folder):
+def effects_table(program, folder, only):
     print("| effect | method | strength 0 is the same picture | some strength is another | instructions, strength 0 over not named |")
     print("|---|---|---|---|---|")
     holds, volume = True, "{ phantom: { head: { size: 48 } } }"
     for name, none, some, needs in EFFECTS:
+        if only is not None and name not in only:
+            continue
         lit = "  shading: { lights: [{ directional: { towards: [1, -2, 1] } }] }\n" if needs == "lit" else ""
         for method, integrate in METHODS:
             def picture(effect):
@@ -113,11 +115,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("pellucid")
     parser.add_argument("--before")
+    parser.add_argument("--only", nargs="*", help="names of effects; all by default")
     arguments = parser.parse_args()
     program = str(pathlib.Path(arguments.pellucid).resolve())
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        holds = effects_table(program, folder)
+        holds = effects_table(program, folder, arguments.only)
         if arguments.before:
             holds &= before_table(program, str(pathlib.Path(arguments.before).resolve()), folder)
     sys.exit(0 if holds else 1)

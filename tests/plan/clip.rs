@@ -40,8 +40,9 @@ fn a_box_that_holds_the_volume_is_no_clipping_and_the_plan_says_so() {
     let whole =
         clipped("{ box: { voxels: [[0, 63], [-5, 47], [open, 32]] }, planes: [{ normal: [1, 1, 1], offset_mm: 0 }] }");
     assert_eq!(whole.scene, plan("").scene, "nothing is cut off");
-    assert!(whole.not_computed.iter().any(|o| o.what == "clipping"), "found {:?}", whole.not_computed);
-    assert!(!plan("").not_computed.iter().any(|o| o.what == "clipping"), "nobody asked for it");
+    let why = |plan: &Plan| plan.not_computed.iter().find(|o| o.what == "clipping").map(|o| o.why.clone());
+    assert_eq!(why(&whole).as_deref(), Some("effects.clip holds the whole volume"));
+    assert_eq!(why(&plan("")).as_deref(), Some("the pipeline does not name it"));
     let part = clipped("{ box: { voxels: [[0, 62.5], open, open] } }");
     assert_eq!(part.scene.effects.clip.half_spaces.len(), 1);
     assert!(!part.not_computed.iter().any(|o| o.what == "clipping"), "found {:?}", part.not_computed);

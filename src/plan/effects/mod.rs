@@ -15,6 +15,7 @@ use crate::scene::{Background, Camera, ClassifyAt, Effects, Projection, Shading}
 use crate::spec::{ClassifyAtName, Color, Spec};
 use crate::volume::Grid;
 
+use super::stages::NOT_NAMED;
 use super::{Omission, clip};
 
 /// What an effect needs to know besides its own keys.
@@ -70,7 +71,7 @@ impl Resolved {
     fn keep<T>(&mut self, asked: Asked<T>, what: &'static str) -> Option<T> {
         let why = match asked {
             Ok(effect) => return Some(effect),
-            Err(Absence::NotNamed) => "the pipeline does not name it".to_owned(),
+            Err(Absence::NotNamed) => NOT_NAMED.to_owned(),
             Err(Absence::NoStrength(why)) => why,
             Err(Absence::Idle(why)) => {
                 self.warnings.push(format!("{what} changes nothing: {why}"));
