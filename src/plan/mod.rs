@@ -154,8 +154,8 @@ impl Plan {
         let of = |names: &[&str]| -> u64 {
             self.stages.iter().filter(|stage| names.contains(&stage.name)).map(|stage| stage.bytes).sum()
         };
-        let rendering = of(&["volume", "field", "classify", "integrate"]);
-        let writing = of(&["volume", "integrate", "image"]);
+        let rendering = of(&["volume", "mask", "field", "classify", "light", "integrate"]);
+        let writing = of(&["volume", "mask", "integrate", "image"]);
         let phases = [("reading the scan", self.reading_bytes), ("rendering", rendering), ("writing", writing)];
         phases.into_iter().max_by_key(|(_, bytes)| *bytes).unwrap_or_default()
     }

@@ -99,6 +99,7 @@ fn what_no_effect_reads_is_not_allocated() {
     let _alone = alone();
     let march = "integrate: { march: { step_voxels: 2 } }";
     let lit = "effects: { shading: {} }";
+    let lamp = "shading: { lights: [{ directional: { towards: [1, -2, 1] } }] }";
     let cases = [
         ("1D", ONE_D, String::new()),
         ("1D, shaded", ONE_D, lit.to_owned()),
@@ -107,10 +108,19 @@ fn what_no_effect_reads_is_not_allocated() {
         ("1D, marched", ONE_D, march.to_owned()),
         ("1D, marched and shaded", ONE_D, format!("{march}\n{lit}")),
         ("2D, marched", TWO_D, march.to_owned()),
+        ("a lamp without shadows", ONE_D, format!("effects: {{ {lamp} }}")),
+        ("shadows", ONE_D, format!("effects: {{ {lamp}, shadows: {{}} }}")),
+        ("shadows, marched", ONE_D, format!("{march}\neffects: {{ {lamp}, shadows: {{}} }}")),
+        (
+            "fog and haze",
+            ONE_D,
+            "effects: { fog: { exp: { density_per_mm: 0.001 } }, haze: { extinction_per_mm: 0.001 } }".to_owned(),
+        ),
+        ("classified at the voxels", ONE_D, "effects: { classify: voxels }".to_owned()),
     ];
     for (name, widget, rest) in cases {
         let (plan, bytes) = rendered(widget, &rest);
-        let planned = planned(&plan, &["field", "classify", "integrate"]);
+        let planned = planned(&plan, &["field", "classify", "light", "integrate"]);
         let apart = bytes.abs_diff(planned);
         // What threads keep: a few kilobytes each.
         assert!(apart < planned / 10 + 64_000, "{name}: planned {planned} bytes beyond the volume, held {bytes}");
@@ -127,6 +137,31 @@ fn a_field_that_is_read_is_seen_by_the_same_measure() {
         with - without > magnitude * 9 / 10,
         "the f32 channel has {magnitude} bytes; {without} without, {with} with"
     );
+}
+
+#[test]
+fn a_mask_takes_a_byte_per_voxel_and_none_takes_nothing() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let options = Options { output: Some(folder.path().join("a.png")), ..Options::default() };
+    let held = |effects: &str| {
+        let spec = spec("{ phantom: { head: { size: 128 } } }", ONE_D, effects);
+        let scan = pipeline::load(&spec, &options).unwrap();
+        let plan = pipeline::plan(&spec, &scan, &options).unwrap();
+        drop(scan);
+        let stage = plan.stages.iter().any(|stage| stage.name == "mask");
+        (stage, plan.memory_bytes(), peak_of(|| pipeline::run(&spec, &options, &|_| ()).unwrap()).1)
+    };
+    let (masked, planned, bytes) = held("effects: { mask: { phantom: structures, labels: { skull: hide } } }");
+    let (plain, without, plain_bytes) = held("");
+    assert!(masked && !plain, "a stage of its own, and none without a mask");
+    let voxels = 128 * 128 * 119;
+    assert!(
+        planned.abs_diff(without + voxels) < 600_000,
+        "planned {planned} with, {without} without, for {voxels} voxels"
+    );
+    assert!(bytes > plain_bytes + voxels * 9 / 10, "{bytes} held with a mask, {plain_bytes} without");
+    assert!(plain_bytes < without + without / 10, "{plain_bytes} held without a mask, {without} planned");
 }
 
 #[test]

@@ -52,7 +52,11 @@ fn a_mask_that_shows_all_labels_that_occur_is_none_and_the_plan_says_so() {
         let found = masked(mask);
         assert_eq!(found.scene, plan("").scene, "{mask}");
         assert!(found.label_classes.is_none() && found.memory_bytes() == plan("").memory_bytes(), "{mask}");
-        assert_eq!(why(&found).as_deref(), Some("all labels that occur show what the transfer function says"), "{mask}");
+        assert_eq!(
+            why(&found).as_deref(),
+            Some("all labels that occur show what the transfer function says"),
+            "{mask}"
+        );
     }
     assert_eq!(why(&plan("")).as_deref(), Some("the pipeline does not name it"));
 }
