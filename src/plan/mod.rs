@@ -8,6 +8,7 @@ mod camera;
 mod classification;
 mod clip;
 mod colors;
+mod crop;
 mod effects;
 mod explain;
 mod integrator;
@@ -24,6 +25,7 @@ mod voxels;
 mod warnings;
 
 pub use classification::{Classification, CleanStep, Tissue};
+pub use crop::Crop;
 use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
 pub use layers::Layer;
