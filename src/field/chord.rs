@@ -69,6 +69,17 @@ impl Chord {
         })
     }
 
+    /// What is left of it from a distance along the ray on, mm; `None` if that is nothing.
+    pub(super) fn from_mm(self, from_mm: f64) -> Option<Self> {
+        let skipped_mm = (from_mm - self.entry_mm).max(0.0);
+        (skipped_mm < self.length_mm).then(|| Chord {
+            entry_mm: self.entry_mm + skipped_mm,
+            length_mm: self.length_mm - skipped_mm,
+            entry_index: self.index_at(skipped_mm),
+            ..self
+        })
+    }
+
     /// Continuous voxel index at a distance from the entry.
     pub fn index_at(&self, mm: f64) -> DVec3 {
         self.entry_index + mm * self.index_per_mm

@@ -20,7 +20,7 @@ use std::fmt;
 
 use crate::error::{Error, Fault, Result};
 use crate::image::Image;
-use crate::plan::Method;
+use crate::plan::{Method, SampleRule};
 use crate::scene::{ClassifyAt, Model, Scene};
 use crate::volume::Volume;
 
@@ -93,6 +93,9 @@ pub fn render_scheduled(
             match &scene.model {
                 Model::Light => select::march(&frame, settings),
                 Model::Value(model) => march::show_number(&frame, settings, model),
+                Model::Surfaces(surfaces) if settings.rule == SampleRule::WholeSteps => {
+                    select::level_changes(&frame, settings, surfaces)
+                }
                 Model::Surfaces(surfaces) => march::show_surfaces(&frame, settings, surfaces),
             }
         }

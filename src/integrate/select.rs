@@ -3,7 +3,7 @@
 use super::atmosphere::Atmosphere;
 use super::classify_voxels::classify_voxels;
 use super::empty_space::EmptySpace;
-use super::march::{AtVoxels, ByPlace, Classified, Kernel, Masked, VtkPhong};
+use super::march::{AtVoxels, ByPlace, Classified, Kernel, LevelChanges, Masked, VtkPhong};
 use super::shade::{Lit, Shader, Unlit};
 use super::texels::{Component, Rgba, Texels};
 use super::{Frame, KernelName, Rendered, Statistics};
@@ -13,7 +13,7 @@ use crate::field::{
     GradientUnits, Macrocells, SliceTable, Spacing, Trilinear, Voxel, gradient_magnitude_per_mm, gradient_range_per_mm,
 };
 use crate::plan::{March, Reflection, Table};
-use crate::scene::ClassifyAt;
+use crate::scene::{ClassifyAt, Surface};
 use crate::volume::Samples;
 
 /// Renders by marching.
@@ -64,6 +64,34 @@ fn by_classifier<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V]) ->
         Baked::OneD(classifier) => by_shader(frame, settings, voxels, &classifier),
         Baked::TwoD(classifier) => by_shader(frame, settings, voxels, &classifier),
     }
+}
+
+/// Renders level surfaces at the samples of whole steps.
+pub(super) fn level_changes(frame: &Frame<'_>, settings: &March, surfaces: &[Surface]) -> Result<Rendered> {
+    match frame.volume.samples() {
+        Samples::I16(voxels) => changes(frame, settings, surfaces, voxels),
+        Samples::F32(voxels) => changes(frame, settings, surfaces, voxels),
+        Samples::Rgba8(_) | Samples::Rgba16(_) => unreachable!("colours have no values, and are refused"),
+    }
+}
+
+fn changes<V: Voxel>(frame: &Frame<'_>, settings: &March, surfaces: &[Surface], voxels: &[V]) -> Result<Rendered> {
+    let (grid, scene) = (frame.volume.grid(), frame.scene);
+    let field = Trilinear::new(voxels, grid.dims())?;
+    if scene.effects.change_light() {
+        let atmosphere = Atmosphere::new(frame.volume, scene);
+        return Ok(LevelChanges::new(frame, field, surfaces, &atmosphere).render(frame, settings));
+    }
+    Ok(match (&scene.shading, settings.reflection) {
+        (None, _) => LevelChanges::new(frame, field, surfaces, &Unlit).render(frame, settings),
+        (Some(shading), Reflection::VtkPhong) => {
+            let shader = VtkPhong::new(shading, &scene.camera, grid, false);
+            LevelChanges::new(frame, field, surfaces, &shader).render(frame, settings)
+        }
+        (Some(shading), Reflection::BlinnPhong) => {
+            LevelChanges::new(frame, field, surfaces, &Lit::new(shading)).render(frame, settings)
+        }
+    })
 }
 
 /// Looks the transfer function up in a texture over the volume's own ranges.

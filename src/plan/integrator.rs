@@ -5,15 +5,15 @@ use super::{
     VolumeInfo,
 };
 use crate::spec::{
-    ColorsName, CompatibilityName, EmissionName, IntegrateSpec, JitterKindName, JitterSpec, LatticeName, MarchSpec,
-    OrderName, ReflectionName, RuleName, Spec, TableSpec,
+    ClassifyAtName, ColorsName, CompatibilityName, EmissionName, IntegrateSpec, JitterKindName, JitterSpec,
+    LatticeName, MarchSpec, OrderName, ReflectionName, RuleName, Spec, TableSpec,
 };
 
 pub(super) fn resolve(spec: &Spec, volume: &VolumeInfo) -> Method {
     match &spec.pipeline.integrate {
         None => Method::Exact(exact(None)),
         Some(IntegrateSpec::Exact(settings)) => Method::Exact(exact(settings.tolerance)),
-        Some(IntegrateSpec::March(settings)) => Method::March(march(settings, volume)),
+        Some(IntegrateSpec::March(settings)) => Method::March(march(spec, settings, volume)),
         Some(IntegrateSpec::Reference) => Method::Reference,
     }
 }
@@ -23,7 +23,7 @@ fn exact(tolerance: Option<f64>) -> Exact {
     Exact { tolerance: tolerance.unwrap_or(1.0 / 255.0) }
 }
 
-fn march(spec: &MarchSpec, volume: &VolumeInfo) -> March {
+fn march(pipeline: &Spec, spec: &MarchSpec, volume: &VolumeInfo) -> March {
     let vtk = spec.compatibility == Some(CompatibilityName::Vtk);
     March {
         step_mm: spec.step_mm.unwrap_or(spec.step_voxels.unwrap_or(0.5) * volume.smallest_spacing_mm()),
@@ -55,7 +55,7 @@ fn march(spec: &MarchSpec, volume: &VolumeInfo) -> March {
         termination_transmittance: spec.termination_transmittance.unwrap_or(if vtk { VTK_TERMINATION } else { 0.0 }),
         table: match &spec.table {
             // A table is made for steps of one length.
-            None if vtk && matches!(spec.rule, None | Some(RuleName::WholeSteps)) => {
+            None if vtk && looks_up(pipeline) && matches!(spec.rule, None | Some(RuleName::WholeSteps)) => {
                 Some(table(&TableSpec::default(), vtk))
             }
             None => None,
@@ -67,6 +67,16 @@ fn march(spec: &MarchSpec, volume: &VolumeInfo) -> March {
             Some(ReflectionName::VtkPhong) => Reflection::VtkPhong,
         },
     }
+}
+
+/// Whether a march classifies samples by one transfer function, which a table can hold.
+fn looks_up(spec: &Spec) -> bool {
+    spec.pipeline.effects.as_ref().is_none_or(|effects| {
+        effects.project.is_none()
+            && effects.surfaces.is_none()
+            && effects.mask.is_none()
+            && effects.classify != Some(ClassifyAtName::Voxels)
+    })
 }
 
 /// VTK's GPU mapper stops where the opacity is above 1 - 1/255.

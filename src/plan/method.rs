@@ -83,6 +83,10 @@ pub enum SampleRule {
     Trapezoid,
     /// At the end of each whole step; what is left of the ray after the last whole step counts for nothing. At least one
     /// sample is taken, be the ray shorter than a step. VTK without jitter; first order.
+    ///
+    /// Surfaces are shown at the first sample behind them. Where the volume is clipped, samples are where VTK's GPU mapper
+    /// has them: a step behind a plane that the ray enters by, up to one beyond a plane that it leaves by, and of what is
+    /// cut off along the voxels' axes ([`super::Crop`]) those inside, half a voxel off at the border.
     WholeSteps,
 }
 

@@ -8,6 +8,7 @@ mod camera;
 mod classification;
 mod clip;
 mod colors;
+mod crop;
 mod effects;
 mod explain;
 mod integrator;
@@ -25,6 +26,7 @@ mod warnings;
 mod work;
 
 pub use classification::{Classification, CleanStep, Tissue};
+pub use crop::Crop;
 use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
 pub use layers::Layer;

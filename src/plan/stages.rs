@@ -194,8 +194,9 @@ fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
     };
     let model = &plan.scene.model;
     let mut parts = vec![format!("steps of {:.4} mm", march.step_mm)];
-    // Surfaces lie between samples, and only light is composited in either order.
-    parts.extend((!matches!(model, Model::Surfaces(_))).then(|| rule.to_owned()));
+    // Surfaces lie between samples unless steps are whole, and only light is composited in either order.
+    let at_samples = !matches!(model, Model::Surfaces(_)) || march.rule == SampleRule::WholeSteps;
+    parts.extend(at_samples.then(|| rule.to_owned()));
     parts.extend((*model == Model::Light).then(|| order.to_owned()));
     let unusual = [
         (march.colors == Colors::Straight, "straight colours"),

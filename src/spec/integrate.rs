@@ -134,7 +134,8 @@ pub enum RuleName {
     Midpoint,
     /// At both ends, averaged: second order.
     Trapezoid,
-    /// At the end of each whole step, the rest of the ray left out: first order, as VTK does without jitter.
+    /// At the end of each whole step, the rest of the ray left out: first order, as VTK does without jitter. Surfaces are
+    /// then shown at the first sample behind them, and clipping ends where VTK's does.
     WholeSteps,
 }
 

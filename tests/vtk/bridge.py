@@ -79,5 +79,7 @@ def render_vtk(folder, mapper, output, *arguments):
 
 
 def mappers(exported):
-    """The mappers that can draw a scene: the fixed-point mapper draws nothing with 2D transfer functions."""
-    return ("gpu",) if exported["transfer_function"]["dimensions"] == 2 else ("gpu", "cpu")
+    """The mappers that can draw a scene: the fixed-point mapper has no 2D transfer functions, averages or surfaces."""
+    reads_value = exported["transfer_function"]["dimensions"] == 1
+    shared = exported["blend"]["mode"] in ("composite", "maximum", "minimum")
+    return ("gpu", "cpu") if reads_value and shared else ("gpu",)

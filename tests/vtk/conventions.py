@@ -53,6 +53,9 @@ def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, map
         "transfer_function": {"dimensions": 1 if gradient is None else 2},
         "camera": camera,
         "background": None,
+        "blend": {"mode": "composite"},
+        "crop_voxels": None,
+        "clipping_planes": [],
         "shading": None,
         "notes": [],
     } | scene
@@ -190,6 +193,61 @@ def lights():
     assert abs(wrong - abs(towards @ gradient)) > 0.1, "the experiment tells them apart"
 
 
+def clipping():
+    """Optical depth in steps: how many samples of the 8 mm along x are left."""
+
+    def samples(step, x, side, **more):
+        plane = {"point_mm": [x, 0, 0], "normal": [side, 0, 0]}
+        alpha = box([0.05, 0.05], step, clipping_planes=[plane], **more)[3]
+        return -np.log1p(-alpha) / (0.05 * step)
+
+    holds("a plane that a ray enters by at 2.3: the first sample is a step behind, 3.3 to 7.3", samples(1.0, 2.3, 1), 5, 1e-4)
+    holds("and none is taken where that is outside", samples(1.0, 7.5, 1), 0, 0)
+    holds("a plane that it leaves by at 5.3: 1 to 6, one sample beyond", samples(1.0, 5.3, -1), 6, 1e-4)
+    holds("at steps of 0.75 mm: 0.75 to 6", samples(0.75, 5.3, -1), 8, 1e-4)
+    turned = {"motion": [[0, -1, 0, 8], [1, 0, 0, 0], [0, 0, 1, 0]]}
+    holds("planes are in the patient, not in the volume", samples(1.0, 5.3, -1, **turned), 6, 1e-4)
+
+    def left(low, high, voxels=N):
+        crop = [[low, high], [-N, 2 * N], [-N, 2 * N]]
+        return -np.log1p(-box([0.05, 0.05], 0.01, dims=(voxels, N, N), crop_voxels=crop)[3]) / 0.05
+
+    for low, high, voxels in ((2, 6, N), (1, 7, N), (4, 14, 17)):
+        cut = [p * voxels / (voxels - 1) - 0.5 for p in (low, high)]
+        holds(f"voxels {low} to {high} of {voxels} are cropped at p n/(n - 1) - 1/2", left(low, high, voxels), cut[1] - cut[0], 0.02)
+
+
+def blend_modes():
+    ramp = np.linspace(0, 0.5, 4097)
+    projection = {"opacity": 1.0, "window": [0.0, 8.0]}
+
+    def grey(mode, extinction, step, **more):
+        """The grey of the values' share of their range, and alpha."""
+        linear, _, _, alpha = box(extinction, step, values="x", colors=np.linspace(0, 1, len(extinction))[:, None], blend=projection | {"mode": mode} | more)
+        return linear, alpha
+
+    opaque, decoded = np.ones(4097), lambda u: ((u + 0.055) / 1.055) ** 2.4
+    holds("the maximum of whole steps of 3 mm is at 6 of 8 mm, by the table", grey("maximum", opaque, 3.0), [0.75, 1], 2e-4)
+    holds("the minimum is at 3 mm", grey("minimum", opaque, 3.0), [0.375, 1], 2e-4)
+    holds("their opacity is that of the value, whatever the step", grey("maximum", ramp, 3.0)[1], 0.375, 1e-4)
+    holds("the average is over the samples, at 3 and 6 mm", grey("average", opaque, 3.0)[0], decoded(4.5 / 8), 1e-5)
+    half = 0.5 * opaque
+    holds("it is of opacity times value, not divided by opacity", grey("average", half, 3.0)[0], decoded(4.5 / 16), 1e-5)
+    sum_ = grey("additive", opaque / 100, 3.0, opacity=1 / 100, window=[0.0, 40.0])[0]
+    holds("the sum is corrected for the step: 3 (3 + 6) mm", sum_, decoded(27 / 40), 1e-5)
+    cut_off = grey("additive", opaque, 3.0, opacity=1.0, window=[0.0, 40.0])[0]
+    holds("and cut off at 1, which is 8 of the range, both ways up", cut_off, decoded(8 / 40), 1e-5)
+
+    def surfaces(levels, step, alphas):
+        return box(alphas, step, values="x", blend={"mode": "isosurface", "levels": levels})[3]
+
+    steps = np.where(np.arange(4097) < 2048, 0.25, 0.5)
+    holds("a surface has its level's opacity, whatever the step", surfaces([2.5], 0.3, steps), 0.25, 1e-6)
+    holds("two levels between two samples follow one by one", surfaces([3.2, 4.4], 3.0, steps), 0.25, 1e-6)
+    holds("both, where samples follow", surfaces([1.2, 5.4], 1.0, steps), 1 - 0.75 * 0.5, 1e-6)
+    holds("the first sample crosses nothing", surfaces([2.5], 3.0, steps), 0.0, 0.0)
+
+
 def fixed_point():
     found = box([0.05, 0.05], 1.0, mapper="cpu")[3]
     holds("the CPU mapper counts in 1/32767", found * 32767, round(found * 32767), 1e-3)
@@ -259,7 +317,7 @@ def march(described, folder, column, row, kind):
 
 
 def main():
-    for experiment in (sampling, opacity, textures, gradients, lights, fixed_point):
+    for experiment in (sampling, opacity, textures, gradients, lights, clipping, blend_modes, fixed_point):
         experiment()
     if len(sys.argv) > 1:
         rounding(Pellucid(sys.argv[1]))

@@ -16,7 +16,7 @@ from bridge import HERE, Pellucid, mappers, render_vtk, scenes
 
 STEP = "step_voxels: {step}"
 # Each with the conventions of those before it.
-MARCHES = [
+LIGHT = [
     ("step", "rule: midpoint"),
     ("first sample", "rule: whole-steps"),
     ("table", "rule: whole-steps, table: {}"),
@@ -24,6 +24,15 @@ MARCHES = [
     ("early end", "rule: whole-steps, table: { uncorrected_opacity: 1e-4 }, termination_transmittance: 1/255"),
     ("light", "compatibility: vtk"),
 ]
+# Neither projections nor surfaces read the transfer function's table; VTK's of a projection holds the window.
+PROJECTION = [("step", "rule: midpoint"), ("first sample", "compatibility: vtk")]
+SURFACES = [("step", "bisections: 0"), ("first sample", "rule: whole-steps"), ("light", "compatibility: vtk")]
+CAUSES = [name for name, _ in LIGHT] + ["rounding", "8 bits"]
+
+
+def marches(exported):
+    """The conventions that show in a scene, by VTK's blend mode."""
+    return {"composite": LIGHT, "isosurface": SURFACES}.get(exported["blend"]["mode"], PROJECTION)
 
 
 def step_of(scene):
@@ -37,9 +46,10 @@ def measure(pellucid, scene, folder):
     step = STEP.format(step=step_of(scene))
     oracle = pellucid.render(scene, "reference", folder / "oracle.exr")
     exact = pellucid.render(scene, "{ exact: { tolerance: 1/255 } }", folder / "exact.exr")
-    marches = [
+    conventions = marches(exported)
+    marched = [
         pellucid.render(scene, f"{{ march: {{ {step}, {settings} }} }}", folder / f"march{i}.exr")
-        for i, (_, settings) in enumerate(MARCHES)
+        for i, (_, settings) in enumerate(conventions)
     ]
     live = {}
     for mapper in mappers(exported):
@@ -56,9 +66,9 @@ def measure(pellucid, scene, folder):
 
     row = {"exact": apart(oracle, exact), "gpu": apart(oracle, live["gpu"]), "gpu8": apart(oracle, live["gpu8"])}
     row["cpu"] = apart(oracle, live["cpu"]) if "cpu" in live else None
-    row["same"] = apart(live["gpu"], marches[-1])
-    chain = [oracle, *marches, live["gpu"], live["gpu8"]]
-    names = [name for name, _ in MARCHES] + ["rounding", "8 bits"]
+    row["same"] = apart(live["gpu"], marched[-1])
+    chain = [oracle, *marched, live["gpu"], live["gpu8"]]
+    names = [name for name, _ in conventions] + ["rounding", "8 bits"]
     row["causes"] = {name: apart(a, b)[1] for name, a, b in zip(names, chain, chain[1:])}
     row["fixed point"] = apart(live["gpu"], live["cpu"])[1] if "cpu" in live else None
     return row
@@ -80,7 +90,7 @@ def text(rows, facts):
         "## Errors against the oracle, and pellucid's march with VTK's conventions against VTK",
         "",
         "Largest / RMS. `exact` is asked for 1/255 and has no step; the mappers draw into floats (GPU), 8 bits (GPU, 8 bits) and "
-        "15 bits (CPU, which has no 2D transfer functions).",
+        "15 bits (CPU, which has no 2D transfer functions, and is held against no averages, sums and surfaces).",
         "",
         "| scene | pellucid exact | VTK GPU | VTK GPU, 8 bits | VTK CPU | pellucid as VTK, to VTK GPU |",
         "|---|---|---|---|---|---|",
@@ -98,17 +108,18 @@ def text(rows, facts):
         "## Where VTK's error comes from",
         "",
         "RMS of what each convention changes, added one after the other from the definition on: *step*, midpoint samples at the "
-        "scene's step; *first sample*, at the ends of whole steps, the rest of the ray left out; *table*, 4096 entries looked up "
+        "scene's step; *first sample*, at the ends of whole steps, the rest of the ray left out, surfaces at the first sample behind "
+        "them, and clipping where VTK has it; *table*, 4096 entries looked up "
         "half an entry off; *faint*, opacities up to 1e-4 per mm not corrected; *early end* at an opacity of 254/255; *light*, "
         "Phong's highlight, differences n/(n - 1) voxels wide, no ambient light and misplaced normals under scene lights. *Rounding* "
         "is what is left: positions added up in f32. Then *8 bits* of the window, and in place of all that, *fixed point*: the "
-        "CPU mapper against the GPU mapper, with its encoded normals where the scene is lit.",
+        "CPU mapper against the GPU mapper, with its encoded normals where the scene is lit. A dash is a convention that a scene "
+        "has no part in; *rounding* of a projection includes the window as a table.",
         "",
     ]
-    names = list(next(iter(rows.values()))["causes"])
-    lines += ["| scene | " + " | ".join(names) + " | fixed point |", "|" + "---|" * (len(names) + 2)]
+    lines += ["| scene | " + " | ".join(CAUSES) + " | fixed point |", "|" + "---|" * (len(CAUSES) + 2)]
     for name, row in rows.items():
-        cells = [f"{row['causes'][cause]:.3f}" for cause in names]
+        cells = [f"{row['causes'][cause]:.3f}" if cause in row["causes"] else "–" for cause in CAUSES]
         fixed = "–" if row["fixed point"] is None else f"{row['fixed point']:.3f}"
         lines.append(f"| {name} | " + " | ".join(cells) + f" | {fixed} |")
     return "\n".join(lines) + "\n"

@@ -46,6 +46,12 @@ impl Light {
         (self.stretch)(self, added, opacity);
     }
 
+    /// Composites something thin, front to back: what it adds, premultiplied, and its opacity.
+    #[inline(always)]
+    pub(super) fn pass(&mut self, added: [f64; 3], opacity: f64) {
+        FrontToBack::composite::<Associated>(self, added, opacity);
+    }
+
     /// What reaches the eye, after so many samples.
     #[inline(always)]
     pub(super) fn radiance(&self, samples: u64) -> Radiance {

@@ -1,8 +1,9 @@
 //! The loop over the samples of a ray.
 
 use super::composite::{self, Fold, Light};
-use super::lattice::{Cuts, Stretch};
+use super::lattice::Stretch;
 use super::medium::Medium;
+use super::sampling::Sampling;
 use crate::field::Chord;
 use crate::field::{Pace, Position};
 use crate::image::Image;
@@ -25,26 +26,24 @@ pub(in super::super) struct Kernel<'a, M> {
 impl<M: Medium> Kernel<'_, M> {
     /// Renders every pixel of a frame.
     pub(in super::super) fn render(&self, frame: &Frame<'_>, settings: &March) -> (Image, Tally) {
-        let (grid, clip, camera) = (frame.volume.grid(), &frame.scene.effects.clip, &frame.scene.camera);
+        let (dims, camera) = (frame.volume.grid().dims(), &frame.scene.camera);
         let fold = composite::fold(settings);
-        // View planes stand still when the camera moves along its line of sight.
-        let anchor_mm = grid.center_mm();
+        let sampling = Sampling::new(frame, settings);
         tiles::render(frame, M::Aim::default, |aim, column, row| {
             let ray = camera.pixel_ray(column, row);
             let mut light = Light::new(settings);
-            let Some(chord) = Chord::new(grid, clip, ray) else {
+            let Some((chord, stretches)) = sampling.along(ray, [column, row]) else {
                 let haze = self.medium.haze()?;
                 light.cross(haze, haze.end_mm);
                 return Some(light.radiance(0));
             };
-            let cuts = Cuts::new(settings, &chord, ray, camera.forward(), anchor_mm, [column, row]);
             self.medium.aim(ray.direction, aim);
             let mut walk = Walk { light, samples: 0, fold };
             let [before_mm, behind_mm] = around(self.medium.haze(), &chord, settings.order);
             walk.cross(self.medium.haze(), before_mm);
-            for stretch in cuts.stretches(settings.rule, settings.order) {
+            for stretch in stretches {
                 if stretch.samples > 0 && !walk.light.is_spent() {
-                    self.walk(&mut walk, aim, grid.dims(), &chord, &stretch);
+                    self.walk(&mut walk, aim, dims, &chord, &stretch);
                 }
             }
             walk.cross(self.medium.haze(), behind_mm);

@@ -32,6 +32,16 @@ pub(super) struct Stretch {
     pub(super) delta_mm: f64,
 }
 
+impl Stretch {
+    /// This stretch, given front to back, alone and in another order.
+    pub(super) fn in_order(mut self, order: Order) -> [Stretch; 4] {
+        if order == Order::BackToFront {
+            (self.first_mm, self.last_mm) = (self.last_mm, self.first_mm);
+        }
+        [self, Stretch::default(), Stretch::default(), Stretch::default()]
+    }
+}
+
 impl Cuts {
     /// Cuts a ray's chord as the settings say. `anchor_mm` is a point on one of the view planes.
     pub(super) fn new(
@@ -72,7 +82,7 @@ impl Cuts {
     }
 
     /// Samples at the ends of whole steps, the first of them even where the ray is shorter.
-    fn whole_steps(&self) -> Stretch {
+    pub(super) fn whole_steps(&self) -> Stretch {
         // A sample that rounding puts beyond the exit is still on the border.
         let more = ((self.length_mm - self.first_mm) / self.step_mm + 1e-9).floor().max(0.0);
         let last_mm = self.first_mm + more * self.step_mm;
@@ -92,11 +102,7 @@ impl Cuts {
         };
         let inner = n.saturating_sub(2);
         if rule == SampleRule::WholeSteps {
-            let mut whole = self.whole_steps();
-            if order == Order::BackToFront {
-                (whole.first_mm, whole.last_mm) = (whole.last_mm, whole.first_mm);
-            }
-            return [whole, Stretch::default(), Stretch::default(), Stretch::default()];
+            return self.whole_steps().in_order(order);
         }
         let mut stretches = match rule {
             SampleRule::Left | SampleRule::Midpoint | SampleRule::WholeSteps => {

@@ -1,11 +1,12 @@
 //! Fixed-step ray marching, as the textbooks and VTK do it.
 //!
-//! A ray is cut into intervals ([`lattice`]); a kernel, chosen by the type of what absorbs and emits ([`medium`]),
+//! A ray is cut into intervals ([`lattice`], [`sampling`], [`whole_steps`]); a kernel, chosen by the type of what absorbs and emits ([`medium`]),
 //! evaluates a run of samples at a time; a fold ([`composite`]), chosen by the other settings, composites the run. So
 //! every setting is decided once per frame and none is asked at a sample, without one kernel per combination.
 //!
 //! A picture of numbers ([`number`]) probes the values, or the extinction, and gathers a run into a maximum or an integral
-//! ([`gather`]); a picture of surfaces ([`surfaces`]) looks for changes between neighbouring samples.
+//! ([`gather`]); a picture of surfaces looks for changes between neighbouring samples: it
+//! interpolates between them ([`surfaces`]), or takes whole steps and stays at the samples ([`level_changes`]).
 
 mod blocks;
 mod by_place;
@@ -14,16 +15,20 @@ mod gather;
 mod jitter;
 mod kernel;
 mod lattice;
+mod level_changes;
 mod medium;
 mod number;
 mod phong;
 mod probe;
+mod sampling;
 mod surfaces;
 mod voxels;
+mod whole_steps;
 
 pub(super) use by_place::{ByPlace, Masked};
 pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;
+pub(super) use level_changes::LevelChanges;
 pub(super) use medium::Classified;
 pub(super) use number::show_number;
 pub(super) use phong::VtkPhong;

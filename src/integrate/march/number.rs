@@ -2,8 +2,9 @@
 
 use super::blocks::Blocks;
 use super::gather::{FirstMaximum, Gather, Integral, Largest};
-use super::lattice::{Cuts, Stretch};
+use super::lattice::Stretch;
 use super::probe::{Extinction, Probe, Stored};
+use super::sampling::Sampling;
 use crate::classify::{Baked, Classifier, bake};
 use crate::error::Result;
 use crate::field::Chord;
@@ -11,7 +12,7 @@ use crate::field::{GradientUnits, Macrocells, Pace, Position, Trilinear, Voxel, 
 use crate::integrate::empty_space::{EmptySpace, Leap};
 use crate::integrate::tiles::{self, Radiance};
 use crate::integrate::{Frame, Rendered, Statistics};
-use crate::plan::{March, Order, SampleRule};
+use crate::plan::{March, SampleRule};
 use crate::scene::{ValueModel, ValueOf};
 use crate::volume::Samples;
 
@@ -103,23 +104,26 @@ impl Of<'_> {
 
     fn render<P: Probe, G: Gather>(self, probe: P, gather: G, number: impl Fn(f64, f64) -> f64 + Sync) -> Rendered {
         let Of { frame, settings, model, name } = self;
-        let (grid, camera, clip) = (frame.volume.grid(), &frame.scene.camera, &frame.scene.effects.clip);
+        let (sampling, camera) = (Sampling::front_to_back(frame, settings), &frame.scene.camera);
         let walker = Walker { probe, gather };
-        let anchor_mm = grid.center_mm();
         let (image, tally) = tiles::render(
             frame,
             || (),
             |(), column, row| {
                 let ray = camera.pixel_ray(column, row);
-                let chord = Chord::new(grid, clip, ray)?;
-                let cuts = Cuts::new(settings, &chord, ray, camera.forward(), anchor_mm, [column, row]);
+                let (chord, stretches) = sampling.along(ray, [column, row])?;
                 let (mut gathered, mut samples) = (walker.gather.start(), 0);
-                for stretch in cuts.stretches(settings.rule, Order::FrontToBack) {
+                for stretch in stretches {
                     if stretch.samples > 0 && !walker.gather.is_settled(&gathered) {
                         walker.walk(&mut gathered, &mut samples, &chord, &stretch);
                     }
                 }
-                let light = model.light(number(walker.gather.number(&gathered), chord.length_mm));
+                let length_mm = match settings.rule {
+                    // What is left of the ray counts for nothing.
+                    SampleRule::WholeSteps => stretches[0].samples as f64 * stretches[0].delta_mm,
+                    SampleRule::Left | SampleRule::Midpoint | SampleRule::Trapezoid => chord.length_mm,
+                };
+                let light = model.light(number(walker.gather.number(&gathered), length_mm));
                 Some(Radiance { color: [light; 3], transmittance: 0.0, samples, error_bound: 0.0 })
             },
         );

@@ -4,14 +4,15 @@
 //! the line through both takes the level, after as many bisections as the settings ask for. Two crossings within one
 //! interval are not seen: that is the error of the method. Colour is shaded by the gradient there, as the definition says.
 
-use super::lattice::{Cuts, Stretch};
+use super::lattice::Stretch;
+use super::sampling::Sampling;
 use crate::error::Result;
 use crate::field::Chord;
 use crate::field::{GradientUnits, Macrocells, Pace, Position, Trilinear, Voxel};
 use crate::integrate::empty_space::{EmptySpace, Leap};
 use crate::integrate::tiles::{self, Radiance};
 use crate::integrate::{Frame, Rendered, Statistics};
-use crate::plan::{March, Order, SampleRule};
+use crate::plan::March;
 use crate::scene::{Ray, Scene, Surface};
 use crate::volume::Samples;
 
@@ -43,13 +44,12 @@ fn show<V: Voxel>(frame: &Frame<'_>, settings: &March, surfaces: &[Surface], vox
         stop_below: settings.termination_transmittance,
         without_levels,
     };
-    let (anchor_mm, clip) = (grid.center_mm(), &frame.scene.effects.clip);
+    let sampling = Sampling::of_ends(frame, settings);
     let (image, tally) = tiles::render(frame, Vec::new, |crossings, column, row| {
         let ray = camera.pixel_ray(column, row);
-        let chord = Chord::new(grid, clip, ray)?;
-        let cuts = Cuts::new(settings, &chord, ray, camera.forward(), anchor_mm, [column, row]);
+        let (chord, stretches) = sampling.along(ray, [column, row])?;
         let mut walk = Walk { ray, chord, before: None, color: [0.0; 3], transmittance: 1.0, samples: 0, crossings };
-        for stretch in cuts.stretches(SampleRule::Trapezoid, Order::FrontToBack) {
+        for stretch in stretches {
             if stretch.samples > 0 {
                 kernel.walk(&mut walk, &stretch);
             }

@@ -43,6 +43,12 @@ impl Frame {
         Ok(Frame { spacing_mm, motion: DAffine3::from_mat3_translation(axes, origin), dims, reversed })
     }
 
+    /// A range of continuous indices `[low, high]` along an axis of the grid, in the order of this frame.
+    pub(super) fn range(&self, axis: usize, [low, high]: [f64; 2]) -> [f64; 2] {
+        let last = (self.dims[axis] - 1) as f64;
+        if axis == 2 && self.reversed { [last - high, last - low] } else { [low, high] }
+    }
+
     /// Voxels in the order of this frame.
     pub(super) fn ordered(&self, voxels: &[f32]) -> Vec<f32> {
         let slice = self.dims[0] * self.dims[1];

@@ -6,8 +6,9 @@
     python render.py --mapper cpu          by the fixed-point mapper (transfer functions of the value alone)
     python render.py --show                in a window
 
-scene.json has the camera, the lights, the grid and the step; the arrays have the values, the transfer function (straight
-linear colour and extinction per mm) and, for 2D transfer functions, the gradient magnitude.
+scene.json has the camera, the lights, the grid, the step, the blend mode and what is clipped; the arrays have the values,
+the transfer function (straight linear colour, and extinction per mm when compositing, else opacity) and, for 2D transfer
+functions, the gradient magnitude.
 """
 
 import argparse
@@ -35,7 +36,7 @@ import vtkmodules.vtkRenderingOpenGL2  # noqa: E402,F401
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: E402,F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
 from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkUnsignedCharArray, vtkVersion  # noqa: E402
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPiecewiseFunction  # noqa: E402
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPiecewiseFunction, vtkPlane  # noqa: E402
 from vtkmodules.vtkCommonMath import vtkMatrix4x4  # noqa: E402
 from vtkmodules.vtkRenderingCore import (  # noqa: E402
     vtkColorTransferFunction,
@@ -57,6 +58,7 @@ here = pathlib.Path(__file__).resolve().parent
 scene = json.loads((here / "scene.json").read_text())
 step_mm = arguments.step_mm or scene["step_mm"]
 two_d = scene["transfer_function"]["dimensions"] == 2
+blend = scene["blend"]
 width, height = scene["camera"]["size"]
 
 
@@ -64,9 +66,11 @@ def load(name):
     return np.load(here / f"{name}.npy")
 
 
-def image():
+def image(upside_down):
     """The values on their lattice, with the gradient magnitude as a second array where it is read."""
     values = load("volume")
+    if upside_down:
+        values = values.min() + (values.max() - values)
     data = vtkImageData()
     data.SetDimensions(values.shape[::-1])
     data.SetSpacing(scene["spacing_mm"])
@@ -94,7 +98,9 @@ def transfer_function(appearance, value_range):
     low, high = value_range
     opacity, colors = vtkPiecewiseFunction(), vtkColorTransferFunction()
     count = table.shape[1]
-    opacity.BuildFunctionFromTable(low, high, count, (-np.expm1(-extinction[0] * UNIT_MM)).copy())
+    # Of the other blend modes the fourth column is opacity as it is.
+    opacities = -np.expm1(-extinction[0] * UNIT_MM) if blend["mode"] == "composite" else extinction[0]
+    opacity.BuildFunctionFromTable(low, high, count, opacities.copy())
     colors.BuildFunctionFromTable(low, high, count, color[0].ravel().copy())
     appearance.SetScalarOpacity(opacity)
     appearance.SetColor(colors)
@@ -140,10 +146,37 @@ def aim(camera, bounds):
     camera.SetClippingRange(max(depths.min() - around, 0.01 * max(depths.max(), 1.0)), depths.max() + around)
 
 
+def show_by_blend_mode(ray_cast, appearance):
+    modes = {
+        "composite": ray_cast.SetBlendModeToComposite,
+        "maximum": ray_cast.SetBlendModeToMaximumIntensity,
+        "minimum": ray_cast.SetBlendModeToMinimumIntensity,
+        "average": ray_cast.SetBlendModeToAverageIntensity,
+        "additive": ray_cast.SetBlendModeToAdditive,
+        "isosurface": ray_cast.SetBlendModeToIsoSurface,
+    }
+    modes[blend["mode"]]()
+    for n, level in enumerate(blend.get("levels", [])):
+        appearance.GetIsoSurfaceValues().SetValue(n, level)
+
+
+def clip(ray_cast):
+    """What the planes leave of the patient, in mm, and the box that is left of the volume, in its own frame."""
+    for given in scene["clipping_planes"]:
+        plane = vtkPlane()
+        plane.SetOrigin(given["point_mm"])
+        plane.SetNormal(given["normal"])
+        ray_cast.AddClippingPlane(plane)
+    if scene["crop_voxels"] is not None:
+        spacing = np.array(scene["spacing_mm"])[:, None]
+        ray_cast.CroppingOn()
+        ray_cast.SetCroppingRegionPlanes((np.array(scene["crop_voxels"]) * spacing).ravel())
+        ray_cast.SetCroppingRegionFlagsToSubVolume()
+
+
 def mapper(data):
     ray_cast = vtkOpenGLGPUVolumeRayCastMapper() if arguments.mapper == "gpu" else vtkFixedPointVolumeRayCastMapper()
     ray_cast.SetInputData(data)
-    ray_cast.SetBlendModeToComposite()
     ray_cast.AutoAdjustSampleDistancesOff()
     ray_cast.SetImageSampleDistance(1.0)
     ray_cast.LockSampleDistanceToInputSpacingOff()
@@ -221,10 +254,37 @@ def write(path, pixels):
     writer.Write()
 
 
-def main():
-    if two_d and arguments.mapper == "cpu":
+def windowed(numbers, met):
+    """Numbers as a grey that a display shows linearly, where a ray met the volume."""
+    low, high = blend["window"]
+    grey = np.clip((numbers - low) / (high - low), 0, 1)
+    light = np.where(grey <= 0.04045, grey / 12.92, ((grey + 0.055) / 1.055) ** 2.4)
+    return np.where(met[..., None], np.stack([light, light, light, np.ones_like(light)], axis=-1), 0)
+
+
+def picture():
+    """Linear premultiplied RGBA, top row first."""
+    pixels, (low, high), ray_cast, window = rendered()
+    share, met = pixels[..., 0], pixels[..., 3] > 0
+    if blend["mode"] == "average":
+        pixels = windowed(low + (high - low) * share, met)
+    if blend["mode"] == "additive":
+        # Of the volume upside down it is the rest of each sample's opacity, so that both say how long the ray is.
+        upside_down = rendered(upside_down=True)[0][..., 0]
+        pixels = windowed((high * share + low * upside_down) / blend["opacity"], met)
+    return pixels, ray_cast, window
+
+
+def refuse():
+    if arguments.mapper == "cpu" and two_d:
         raise SystemExit("VTK's fixed-point mapper draws nothing with a 2D transfer function")
-    data, value_range = image()
+    if arguments.mapper == "cpu" and blend["mode"] not in ("composite", "maximum", "minimum"):
+        raise SystemExit(f"VTK's fixed-point mapper has no equal of the blend mode {blend['mode']}")
+
+
+def rendered(upside_down=False):
+    """VTK's pixels, the range of the values, and what made them."""
+    data, value_range = image(upside_down)
     appearance = vtkVolumeProperty()
     appearance.SetInterpolationTypeToLinear()
     transfer_function(appearance, value_range)
@@ -237,6 +297,8 @@ def main():
         appearance.SetSpecularPower(shading["shininess"])
 
     ray_cast = mapper(data)
+    show_by_blend_mode(ray_cast, appearance)
+    clip(ray_cast)
     volume = vtkVolume()
     volume.SetMapper(ray_cast)
     volume.SetProperty(appearance)
@@ -267,9 +329,14 @@ def main():
         interactor = vtkRenderWindowInteractor()
         interactor.SetRenderWindow(window)
         interactor.Start()
-        return
+        raise SystemExit
 
-    pixels = pixels_of(window, ray_cast, texture)[::-1].astype(np.float64)
+    return pixels_of(window, ray_cast, texture)[::-1].astype(np.float64), value_range, ray_cast, window
+
+
+def main():
+    refuse()
+    pixels, ray_cast, window = picture()
     if scene["background"] is not None:
         pixels[..., :3] += (1 - pixels[..., 3:]) * np.array(scene["background"])
         pixels[..., 3] = 1

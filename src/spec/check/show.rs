@@ -2,7 +2,9 @@
 
 use super::{Check, join};
 use crate::error::Result;
-use crate::spec::{EffectsSpec, IntegrateSpec, MarchSpec, Pipeline, ProjectSpec, ProjectionOf, TransportName};
+use crate::spec::{
+    EffectsSpec, IntegrateSpec, MarchSpec, Pipeline, ProjectSpec, ProjectionOf, RuleName, TransportName,
+};
 
 /// Whether what shows is by the transfer function.
 pub(super) fn reads_transfer_function(effects: &EffectsSpec) -> bool {
@@ -63,10 +65,17 @@ pub(super) fn check_marched(check: Check<'_>, pipeline: &Pipeline) -> Result<()>
     let effects = pipeline.effects.as_ref();
     let (project, surfaces) =
         (effects.is_some_and(|e| e.project.is_some()), effects.is_some_and(|e| e.surfaces.is_some()));
-    let MarchSpec { rule, bisections, order, colors, emission, termination_transmittance, .. } = march;
+    let MarchSpec {
+        rule, bisections, order, colors, emission, termination_transmittance, compatibility, table, ..
+    } = march;
     let unread = |key: &str, given: bool, why: &str| check.unread(&join("integrate.march", key), given, why);
+    let whole_steps = *rule == Some(RuleName::WholeSteps) || (compatibility.is_some() && rule.is_none());
     unread("bisections", bisections.is_some() && !surfaces, "only surfaces are refined")?;
-    unread("rule", rule.is_some() && surfaces, "surfaces are looked for between the ends of each interval")?;
+    unread("bisections", bisections.is_some() && whole_steps, "whole steps show surfaces at their samples")?;
+    let between = surfaces && !whole_steps;
+    unread("rule", rule.is_some() && between, "surfaces are looked for between the ends of each interval")?;
+    let masked = effects.is_some_and(|e| e.mask.is_some());
+    unread("table", table.is_some() && (project || surfaces || masked), "a table is of one transfer function")?;
     if project || surfaces {
         let why = if project { "a number is not composited" } else { "surfaces are composited in their order" };
         unread("order", order.is_some(), why)?;
