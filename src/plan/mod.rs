@@ -22,6 +22,7 @@ mod stages;
 mod volume_info;
 mod voxels;
 mod warnings;
+mod widgets;
 
 pub use classification::{Classification, CleanStep, Tissue};
 use effects::{Resolved, Surroundings};
@@ -35,6 +36,7 @@ pub use output::{Format, Output};
 pub use stack::StackPlan;
 pub use stages::{Omission, Stage};
 pub use volume_info::{LabelInfo, Storage, VolumeInfo};
+pub use widgets::{LayerWidgets, WidgetWeight, widgets};
 
 use std::path::Path;
 
