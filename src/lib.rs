@@ -26,12 +26,14 @@ pub mod io;
 pub mod spec;
 pub mod synthetic;
 
+pub mod histogram;
 pub mod oracle;
 pub mod plan;
 
 pub mod integrate;
 pub mod tissue;
 
+pub mod chart;
 pub mod interchange;
 pub mod pipeline;
 pub mod verify;

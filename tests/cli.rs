@@ -2,6 +2,7 @@
 
 mod compare;
 mod failures;
+mod histograms;
 mod labels;
 mod masks;
 mod pictures;

@@ -12,9 +12,9 @@ const LAYERS: [&[&str]; 6] = [
     &["math", "simd", "error", "demand"],
     &["volume", "transfer", "image", "scene"],
     &["field", "classify", "spec", "io", "synthetic"],
-    &["plan", "oracle"],
+    &["histogram", "plan", "oracle"],
     &["integrate", "tissue"],
-    &["interchange", "pipeline", "verify"],
+    &["chart", "interchange", "pipeline", "verify"],
 ];
 
 /// Modules that may use less than their layer allows: `(user, what it may use, why)`.

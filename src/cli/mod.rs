@@ -65,6 +65,8 @@ enum Command {
     Classify(classify::Classify),
     /// Compare labels with a reference: overlap, distances, and what was possible
     Evaluate(evaluate::Evaluate),
+    /// Draw the joint histogram of value and gradient magnitude, with the widgets of presets over it
+    Histogram(histogram::Histogram),
     /// Print what is in a scan: series, geometry, values, and what became of each file
     Info(info::Info),
     /// Write a synthetic CT scan whose every value is known by formula
@@ -135,6 +137,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         Command::Explain(command) => command.run(),
         Command::Classify(command) => command.run(global),
         Command::Evaluate(command) => command.run(global),
+        Command::Histogram(command) => command.run(global),
         Command::Info(command) => command.run(),
         Command::Phantom(command) => command.run(),
         Command::Presets(command) => command.run(),

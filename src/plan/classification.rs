@@ -145,7 +145,7 @@ impl From<CleanSpec> for CleanStep {
 }
 
 /// Where a transfer function absorbs most: at a knot, since it is bilinear between knots.
-fn peak(function: &TransferFunction) -> Optics {
+pub(super) fn peak(function: &TransferFunction) -> Optics {
     let mut peak = Optics::NOTHING;
     for value in function.value_knots() {
         for gradient in function.gradient_knots() {

@@ -24,6 +24,7 @@ mod volume_info;
 mod voxels;
 mod warnings;
 mod work;
+mod widgets;
 
 pub use classification::{Classification, CleanStep, Tissue};
 pub use crop::Crop;
@@ -39,6 +40,7 @@ pub use stack::StackPlan;
 pub use stages::{Omission, Stage};
 pub use volume_info::{LabelInfo, Storage, VolumeInfo};
 pub use work::Work;
+pub use widgets::{LayerWidgets, WidgetWeight, widgets};
 
 use std::path::Path;
 

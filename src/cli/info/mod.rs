@@ -1,5 +1,6 @@
 //! `pellucid info`: what is in a scan.
 
+mod histogram;
 mod report;
 mod text;
 

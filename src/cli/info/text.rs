@@ -2,7 +2,7 @@
 
 use pellucid::io::Scan;
 
-use super::super::histogram;
+use super::histogram;
 use super::report::{FileReport, Report, SeriesReport, VolumeReport};
 
 /// Characters of the histogram.

@@ -1,0 +1,95 @@
+//! From numbers to pixels, and the numbers that are written beside them.
+
+/// A linear scale: `from` is at pixel `at`, `to` at pixel `end`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Linear {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) at: f64,
+    pub(super) end: f64,
+}
+
+impl Linear {
+    /// The pixel of a number.
+    pub(super) fn pixel(&self, x: f64) -> f64 {
+        self.at + (x - self.from) / (self.to - self.from) * (self.end - self.at)
+    }
+
+    /// Round numbers from end to end, about so many.
+    pub(super) fn ticks(&self, about: usize) -> Vec<f64> {
+        let raw = (self.to - self.from) / about as f64;
+        let power = 10f64.powf(raw.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter().find(|s| *s >= raw).unwrap_or(raw);
+        // Rounding must not cost the tick at an end.
+        let slack = 1e-9;
+        let (first, last) = ((self.from / step - slack).ceil() as i64, (self.to / step + slack).floor() as i64);
+        (first..=last).map(|n| n as f64 * step).collect()
+    }
+}
+
+/// Counts on a logarithmic scale: where 1 is 0 and the highest count 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Logarithmic {
+    pub(super) highest: u64,
+}
+
+impl Logarithmic {
+    /// Share of the scale for a count of at least 1; 1 where the highest is 1.
+    pub(super) fn share(&self, count: u64) -> f64 {
+        if self.highest <= 1 { 1.0 } else { (count as f64).ln() / (self.highest as f64).ln() }
+    }
+
+    /// The powers of ten on the scale.
+    pub(super) fn ticks(&self) -> Vec<u64> {
+        std::iter::successors(Some(1_u64), |n| n.checked_mul(10)).take_while(|n| *n <= self.highest).collect()
+    }
+}
+
+/// A number as people write it: a true minus, no digits beyond those that a step of ticks needs.
+pub(super) fn label(x: f64, step: f64) -> String {
+    let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{:.decimals$}", x.abs());
+    if x < 0.0 && text.contains(|c: char| ('1'..='9').contains(&c)) { format!("−{text}") } else { text }
+}
+
+/// A count with thin spaces between groups of three digits.
+pub fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (n, digit) in digits.chars().enumerate() {
+        if n > 0 && (digits.len() - n) % 3 == 0 {
+            text.push('\u{2009}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_include_the_ends() {
+        let ticks = |from, to| Linear { from, to, at: 0.0, end: 1.0 }.ticks(8);
+        assert_eq!(ticks(-1000.0, 3000.0), [-1000.0, -500.0, 0.0, 500.0, 1000.0, 1500.0, 2000.0, 2500.0, 3000.0]);
+        assert_eq!(ticks(0.0, 0.3).len(), 7, "steps of 0.05: {:?}", ticks(0.0, 0.3));
+        assert_eq!(ticks(-1024.0, 3071.0).first(), Some(&-1000.0));
+    }
+
+    #[test]
+    fn counts_are_logarithmic() {
+        let scale = Logarithmic { highest: 10_000 };
+        assert!((scale.share(100) - 0.5).abs() < 1e-12 && scale.share(1) == 0.0 && scale.share(10_000) == 1.0);
+        assert_eq!(scale.ticks(), [1, 10, 100, 1000, 10_000]);
+        assert_eq!((Logarithmic { highest: 1 }.share(1), Logarithmic { highest: 0 }.ticks()), (1.0, vec![]));
+    }
+
+    #[test]
+    fn labels_are_as_people_write_them() {
+        assert_eq!([(-1000.0, 500.0), (0.0, 500.0), (-0.0, 1.0)].map(|(x, step)| label(x, step)), ["−1000", "0", "0"]);
+        assert_eq!([(0.25, 0.05), (1.5, 0.5)].map(|(x, step)| label(x, step)), ["0.25", "1.5"]);
+        assert_eq!(grouped(1_234_567), "1\u{2009}234\u{2009}567");
+        assert_eq!([grouped(0), grouped(999)], ["0", "999"]);
+    }
+}
