@@ -2,6 +2,7 @@
 
 mod compare;
 mod failures;
+mod interchange;
 mod labels;
 mod masks;
 mod pictures;

@@ -26,7 +26,7 @@ mod warnings;
 pub use classification::{Classification, CleanStep, Tissue};
 use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
-pub use layers::Layer;
+pub use layers::{Layer, preset_terms};
 pub use mask::LabelClasses;
 pub use method::{
     Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,
