@@ -3,6 +3,7 @@
 mod compare;
 mod failures;
 mod histograms;
+mod interchange;
 mod labels;
 mod masks;
 mod pictures;

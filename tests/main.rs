@@ -10,6 +10,7 @@ mod formulas;
 mod hard_cases;
 mod house;
 mod image;
+mod interchange;
 mod layering;
 mod march;
 mod mask;

@@ -71,7 +71,7 @@ enum Command {
     Info(info::Info),
     /// Write a synthetic CT scan whose every value is known by formula
     Phantom(phantom::Phantom),
-    /// List or print the transfer functions that come with pellucid
+    /// List, print, check, import and export transfer functions
     Presets(presets::Presets),
     /// Print the JSON Schema of pipelines or presets, for editors
     Schema(schema::Schema),

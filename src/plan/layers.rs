@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::spec::{
-    AttenuationSpec, Color, ContourSpec, EmissionSpec, LayerSpec, LoadedPreset, Pipeline, Spec, Tissue, ValuesName,
-    Widget,
+    AttenuationSpec, Color, ContourSpec, EmissionSpec, LayerSpec, LoadedPreset, Pipeline, Preset, Spec, Tissue,
+    ValuesName, Widget,
 };
 use crate::transfer::attenuation::Attenuation;
 use crate::transfer::shapes::{Ellipse, Expansion, Gaussian, Shape, Triangle, extinction_per_mm};
@@ -103,6 +103,18 @@ pub(super) fn layer(
         (None, None) => place.name.to_owned(),
     };
     Ok(Layer { name, tissue: preset.and_then(|p| p.tissue.clone()), terms, max_deviation })
+}
+
+/// The terms of a preset as it is written, without a layer's settings.
+///
+/// # Errors
+/// `Fault::Spec` for a shape that is degenerate or takes too many terms, naming the widget.
+pub fn preset_terms(preset: &Preset) -> Result<Vec<Term>> {
+    let terms = |(k, widget): (usize, &Widget)| {
+        let expansion = expand(widget, None).map_err(|error| error.element(format!("widgets.{k}")))?;
+        Ok(expansion.terms)
+    };
+    Ok(preset.widgets.iter().enumerate().map(terms).collect::<Result<Vec<_>>>()?.concat())
 }
 
 /// The terms of shapes without optics: their extinction is 1 where a shape is 1.

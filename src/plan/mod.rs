@@ -30,7 +30,7 @@ pub use classification::{Classification, CleanStep, Tissue};
 pub use crop::Crop;
 use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
-pub use layers::Layer;
+pub use layers::{Layer, preset_terms};
 pub use mask::LabelClasses;
 pub use method::{
     Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,

@@ -42,6 +42,15 @@ pub fn load_preset(path: &Path) -> Result<LoadedPreset> {
     typed(Source::read(path, &[])?, &name)
 }
 
+/// The same from text; `path`, whose stem is the preset's name, is for messages.
+///
+/// # Errors
+/// As [`load_preset`].
+pub fn parse_preset(text: &str, path: &Path) -> Result<LoadedPreset> {
+    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    typed(Source::parse(text.to_owned(), path, &[])?, &name)
+}
+
 /// A preset that is built in, if there is one of this name.
 ///
 /// # Errors

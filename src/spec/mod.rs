@@ -43,7 +43,7 @@ pub use integrate::{
     ColorsName, CompatibilityName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec, LatticeName,
     MarchSpec, OrderName, ReflectionName, RuleName, TableSpec,
 };
-pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset};
+pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset, parse_preset};
 pub use per_axis::PerAxis;
 pub use pipeline::{
     AttenuationSpec, BackgroundSpec, Bits, ColorEncodingName, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec,

@@ -1,11 +1,15 @@
 //! `pellucid presets`: the transfer functions that come with pellucid.
 
+mod check;
+mod export;
+mod import;
+
 use std::path::PathBuf;
 
 use pellucid::io::dicom::SeriesChoice;
 use pellucid::io::{load, read_labels};
 use pellucid::pipeline;
-use pellucid::spec::{BUILT_IN_PRESETS, ReferenceTissues, built_in_preset};
+use pellucid::spec::{BUILT_IN_PRESETS, LoadedPreset, ReferenceTissues, built_in_preset};
 use pellucid::tissue::{fit, mask_of};
 use pellucid::{Error, Fault, Result};
 
@@ -29,6 +33,12 @@ enum Action {
     },
     /// Propose widgets for a tissue from a scan whose labels are known
     Fit(Fit),
+    /// Make presets of those of 3D Slicer (.vp, .vp.json, presets.xml) and ParaView (.json)
+    Import(import::Import),
+    /// Write a preset for 3D Slicer or ParaView, over the value alone, and say what that loses
+    Export(export::Export),
+    /// Check preset files: keys, numbers, shapes
+    Check(check::Check),
 }
 
 #[derive(Debug, clap::Args)]
@@ -49,12 +59,15 @@ struct Fit {
 }
 
 impl Presets {
-    /// Prints the list or the preset.
+    /// Does what its action says.
     pub(super) fn run(&self) -> Result<()> {
         match &self.action {
             Action::List => stdout::print(&list()?),
-            Action::Show { name } => stdout::print(text(name)?),
+            Action::Show { name } => stdout::print(&named(name)?.text),
             Action::Fit(fit) => stdout::print(&fit.proposal()?),
+            Action::Import(import) => import.run(),
+            Action::Export(export) => export.run(),
+            Action::Check(check) => check.run(),
         }
     }
 }
@@ -88,16 +101,17 @@ impl Fit {
 fn list() -> Result<String> {
     let widest = BUILT_IN_PRESETS.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let presets = BUILT_IN_PRESETS.iter().filter_map(|(name, _)| built_in_preset(name));
-    let line = |loaded: Result<pellucid::spec::LoadedPreset>| {
+    let line = |loaded: Result<LoadedPreset>| {
         let preset = loaded?.preset;
         Ok(format!("{:widest$}  {}", preset.name, preset.description.unwrap_or_default()))
     };
     Ok(presets.map(line).collect::<Result<Vec<String>>>()?.join("\n"))
 }
 
-fn text(name: &str) -> Result<&'static str> {
-    if let Some((_, text)) = BUILT_IN_PRESETS.iter().find(|(known, _)| *known == name) {
-        return Ok(text);
+/// A preset that comes along, or an error that suggests one.
+fn named(name: &str) -> Result<LoadedPreset> {
+    if let Some(preset) = built_in_preset(name) {
+        return preset;
     }
     let names: Vec<&str> = BUILT_IN_PRESETS.iter().map(|(name, _)| *name).collect();
     let similarity = |known: &&str| strsim::jaro_winkler(known, name);
