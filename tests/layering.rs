@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 use paths::{Use, root_names, uses};
 
 /// The library's modules by layer. A module may use modules of lower layers, and itself.
-const LAYERS: [&[&str]; 6] = [
+const LAYERS: [&[&str]; 7] = [
     &["math", "simd", "error", "demand"],
     &["volume", "transfer", "image", "scene"],
-    &["field", "classify", "spec", "io", "synthetic"],
+    &["chart", "field", "classify", "spec", "io", "synthetic"],
     &["plan", "oracle"],
     &["integrate", "tissue"],
-    &["interchange", "pipeline", "verify"],
+    &["interchange", "study", "verify"],
+    &["pipeline"],
 ];
 
 /// Modules that may use less than their layer allows: `(user, what it may use, why)`.

@@ -19,6 +19,7 @@ pub(crate) mod report;
 mod schema;
 mod stderr;
 mod stdout;
+mod study;
 mod table;
 mod verify;
 
@@ -77,6 +78,8 @@ enum Command {
     Compare(compare::Compare),
     /// Write a Python script that renders a pipeline's scene with VTK
     ExportVtk(export_vtk::ExportVtk),
+    /// Measure what accuracy costs in time: settings of the integrators against the oracle, and each choice by itself
+    Study(study::Study),
     /// Verify the integrators: orders of convergence, errors against the truth, identities
     Verify(verify::Verify),
     /// Print a completion script for a shell
@@ -141,6 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         Command::Schema(command) => command.run(),
         Command::Compare(command) => command.run(global),
         Command::ExportVtk(command) => command.run(),
+        Command::Study(command) => command.run(global),
         Command::Verify(command) => command.run(),
         Command::Completions(command) => command.run(),
     }
