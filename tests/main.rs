@@ -22,6 +22,7 @@ mod plan;
 mod properties;
 mod rectilinear;
 mod spec;
+mod study;
 mod support;
 mod tissue;
 mod verify;
