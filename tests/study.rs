@@ -46,7 +46,7 @@ fn the_exact_integrator_keeps_each_tolerance_and_finer_steps_are_more_accurate()
 fn choices_that_change_no_picture_change_no_error() {
     let study = studied(2);
     let cost = |choice: &str| study.costs.iter().filter(move |cost| cost.choice == choice);
-    for choice in ["all threads instead of one", "empty-space skipping", "2D instead of 1D transfer function"] {
+    for choice in ["all threads instead of one", "empty-space skipping"] {
         for cost in cost(choice) {
             let [without, with] = cost.errors.map(|errors| errors.largest);
             // Another kernel may round otherwise.

@@ -78,7 +78,7 @@ enum Command {
     Compare(compare::Compare),
     /// Write a Python script that renders a pipeline's scene with VTK
     ExportVtk(export_vtk::ExportVtk),
-    /// Measure what accuracy costs in time: settings of the integrators against the oracle, and each choice by itself
+    /// Measure what accuracy costs in time: settings against the oracle, choice by choice
     Study(study::Study),
     /// Verify the integrators: orders of convergence, errors against the truth, identities
     Verify(verify::Verify),

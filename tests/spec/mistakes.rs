@@ -155,7 +155,7 @@ fn numbers_out_of_range_are_found() {
         "a value is out of range (camera.fov_degrees): found 180, expected an angle above 0 and below 180 degrees",
     );
     check_after(
-        "integrate: { auto: { «budget_ms»: 0 } }\n",
+        "integrate: { auto: { budget_ms: «0» } }\n",
         "a value is out of range (integrate.auto.budget_ms): found 0, expected a number above 0",
     );
     check_after(
