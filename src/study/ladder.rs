@@ -35,8 +35,8 @@ impl Family {
         }
     }
 
-    /// About how many times as long the next finer setting takes: twice the samples, or a hundred times the accuracy of
-    /// which every factor of ten costs less than twice as much.
+    /// About how many times as long the next finer setting takes, rather too much than too little: twice the samples, or a
+    /// tenth of the tolerance.
     pub(super) fn growth(self) -> f64 {
         match self {
             Family::Exact => 3.0,
@@ -77,11 +77,11 @@ pub fn ladder(smallest_spacing_mm: f64) -> Vec<Rung> {
 
 /// The exact integrator at a tolerance.
 pub fn exact(tolerance: f64) -> Rung {
-    let written = match (1.0 / tolerance).round() {
+    let written = match tolerance {
         // One step of an 8-bit channel is what most people write.
-        255.0 => "1/255".to_owned(),
-        _ if tolerance < 0.01 => format!("{tolerance:e}"),
-        _ => tolerance.to_string(),
+        t if t == 1.0 / 255.0 => "1/255".to_owned(),
+        t if t < 0.01 => format!("{t:e}"),
+        t => t.to_string(),
     };
     Rung {
         family: Family::Exact,
@@ -128,6 +128,7 @@ mod tests {
         }
         assert_eq!(rungs[0].setting, "{ march: { step_voxels: 4, rule: left } }");
         assert_eq!(exact(1.0 / 255.0).setting, "{ exact: { tolerance: 1/255 } }");
+        assert_eq!(exact(0.00392).setting, "{ exact: { tolerance: 3.92e-3 } }", "near 1/255 is not 1/255");
         assert_eq!(exact(1e-5).setting, "{ exact: { tolerance: 1e-5 } }");
     }
 }

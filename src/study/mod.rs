@@ -1,12 +1,12 @@
 //! What accuracy costs in time: settings measured on one scene, against the oracle.
 //!
-//! [`study`] renders a scene by a [`ladder`] of settings and by pairs that differ in one choice. The oracle's pixels are the
+//! [`study`] renders a scene by a [`ladder()`] of settings and by pairs that differ in one choice. The oracle's pixels are the
 //! costly part: they are computed once for all settings, by a share of the time. Of each picture the errors on these pixels
 //! are kept, and the median of the seconds that it took; settings take turns, so that whatever else the machine does
 //! falls on all of them.
 //!
 //! [`choose_method`] does the same in small, where a pipeline leaves the method to measurements. The choice itself,
-//! [`choose`], is a function of the numbers alone.
+//! [`choose()`], is a function of the numbers alone.
 //!
 //! Errors are those of a channel of a pixel, linear and premultiplied. Seconds are wall-clock time of a frame with all that
 //! it needs but the volume in memory.
