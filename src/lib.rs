@@ -20,6 +20,7 @@ pub mod scene;
 pub mod transfer;
 pub mod volume;
 
+pub mod chart;
 pub mod classify;
 pub mod field;
 pub mod io;
@@ -33,10 +34,11 @@ pub mod plan;
 pub mod integrate;
 pub mod tissue;
 
-pub mod chart;
 pub mod interchange;
-pub mod pipeline;
+pub mod study;
 pub mod verify;
+
+pub mod pipeline;
 
 pub use error::{Error, Fault, Result};
 pub use image::Image;

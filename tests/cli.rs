@@ -10,6 +10,7 @@ mod pictures;
 mod program;
 mod scans;
 mod stacks;
+mod study;
 
 use program::pellucid;
 

@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 use paths::{Use, root_names, uses};
 
 /// The library's modules by layer. A module may use modules of lower layers, and itself.
-const LAYERS: [&[&str]; 6] = [
+const LAYERS: [&[&str]; 7] = [
     &["math", "simd", "error", "demand"],
     &["volume", "transfer", "image", "scene"],
     &["field", "classify", "spec", "io", "synthetic"],
     &["histogram", "plan", "oracle"],
-    &["integrate", "tissue"],
-    &["chart", "interchange", "pipeline", "verify"],
+    &["chart", "integrate", "tissue"],
+    &["interchange", "study", "verify"],
+    &["pipeline"],
 ];
 
 /// Modules that may use less than their layer allows: `(user, what it may use, why)`.

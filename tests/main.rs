@@ -23,6 +23,7 @@ mod plan;
 mod properties;
 mod rectilinear;
 mod spec;
+mod study;
 mod support;
 mod tissue;
 mod verify;

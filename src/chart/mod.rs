@@ -1,16 +1,19 @@
-//! Histograms as pictures to read, drawn once as SVG; PNG is that drawing rasterised, so the two are the same picture.
+//! Histograms and charts as pictures to read, drawn as SVG; the PNG of a histogram is that drawing rasterised.
 //!
 //! No font of the system is read: pictures carry DejaVu Sans along (PNG), or ask for it by name (SVG). Counts are shown
 //! logarithmically by colours of falling lightness, dark for many, so that the eye orders them without the colour bar.
 
 mod contour;
 mod drawing;
+mod font;
 mod histogram;
 mod ink;
+mod loglog;
 mod raster;
 mod scale;
 
 pub use histogram::{Caption, histogram};
+pub use loglog::{LogLog, Series};
 pub use scale::grouped;
 
 use std::path::Path;

@@ -33,7 +33,7 @@ impl Explain {
         };
         let options = self.pipeline.options(None);
         let scan = pipeline::load(&spec, &options)?;
-        let plan = pipeline::plan(&spec, &scan, &options)?;
+        let plan = pipeline::settled_plan(&spec, scan, &options)?;
         match self.format {
             Format::Text => stdout::print(&explain(&plan)),
             Format::Json => stdout::print_json(&explain_json(&plan)),

@@ -19,6 +19,7 @@ pub(crate) mod report;
 mod schema;
 mod stderr;
 mod stdout;
+mod study;
 mod table;
 mod verify;
 
@@ -79,6 +80,8 @@ enum Command {
     Compare(compare::Compare),
     /// Write a Python script that renders a pipeline's scene with VTK
     ExportVtk(export_vtk::ExportVtk),
+    /// Measure what accuracy costs in time: settings against the oracle, choice by choice
+    Study(study::Study),
     /// Verify the integrators: orders of convergence, errors against the truth, identities
     Verify(verify::Verify),
     /// Print a completion script for a shell
@@ -144,6 +147,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         Command::Schema(command) => command.run(),
         Command::Compare(command) => command.run(global),
         Command::ExportVtk(command) => command.run(),
+        Command::Study(command) => command.run(global),
         Command::Verify(command) => command.run(),
         Command::Completions(command) => command.run(),
     }

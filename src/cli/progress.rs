@@ -5,6 +5,9 @@ use std::io::IsTerminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pellucid::pipeline::Event;
 
+/// Steps of a bar that shows a share.
+const SHARES: u64 = 1000;
+
 /// Shows how far a run is.
 pub(super) struct Bar {
     bar: ProgressBar,
@@ -38,6 +41,19 @@ impl Bar {
             }
             Event::Pixels(count) => self.bar.inc(count as u64),
         }
+    }
+
+    /// Shows what is done now, and the share of the time that is over, 0 to 1.
+    pub(super) fn spend(&self, what: &str, share: f64) {
+        if self.bar.length() != Some(SHARES) {
+            self.bar.set_length(SHARES);
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:40} {percent}% {elapsed} {msg}") {
+                self.bar.set_style(style);
+            }
+        }
+        self.bar.set_message(what.to_owned());
+        self.bar.set_position((share * SHARES as f64) as u64);
+        self.bar.tick();
     }
 
     /// Takes the bar off the screen.

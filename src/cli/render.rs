@@ -59,11 +59,13 @@ fn summary(outcome: &Outcome) -> String {
     let times: Vec<String> = sidecar.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
     let memory = sidecar.peak_memory_bytes.map(|bytes| format!(", at most {} MB of memory", bytes / 1_000_000));
     let clipped = &sidecar.clipped;
-    let mut lines = vec![
+    let chosen = sidecar.choice.iter().map(|c| format!("integrate: {}: {}", c.rung.setting, c.because));
+    let mut lines: Vec<String> = chosen.collect();
+    lines.extend([
         times.join(", "),
         format!("{} on {} threads{}", sidecar.method.kernel, sidecar.threads, memory.unwrap_or_default()),
         format!("{} of {} voxels below the window, {} above", clipped.below, clipped.voxels, clipped.above),
-    ];
+    ]);
     lines.extend(sidecar.certificate.iter().map(|c| {
         let [largest, most, rms] = [c.largest_error, c.error_of_999_in_1000, c.rms_error];
         format!("{}; largest error {largest:.2e}, 99.9 % below {most:.2e}, RMS {rms:.2e}", c.statement)

@@ -8,7 +8,8 @@ use sha2::{Digest, Sha256};
 
 use crate::image::Image;
 use crate::oracle::Oracle;
-use crate::plan::{Method, Plan};
+use crate::plan::Plan;
+use crate::study::{Errors, difference};
 use crate::volume::Volume;
 
 /// Chance that the statement of a [`Certificate`] is wrong.
@@ -44,11 +45,7 @@ impl Certificate {
         };
         let chosen = chosen(pixels_sha256, image.pixels().len(), count);
         let errors = chosen.par_iter().map(error).collect();
-        let tolerance = match plan.method {
-            Method::Exact(exact) => Some(exact.tolerance),
-            Method::March(_) | Method::Reference => None,
-        };
-        Certificate::from_errors(errors, image.pixels().len(), tolerance)
+        Certificate::from_errors(errors, image.pixels().len(), plan.tolerance())
     }
 
     /// Whether a pixel is above the tolerance that was asked for, or is no number at all.
@@ -56,17 +53,14 @@ impl Certificate {
         self.above_tolerance.is_some_and(|above| above > 0) || !self.largest_error.is_finite()
     }
 
-    fn from_errors(mut errors: Vec<f64>, of_pixels: usize, tolerance: Option<f64>) -> Self {
-        errors.sort_by(f64::total_cmp);
-        let pixels = errors.len();
-        let rank = (0.999 * pixels as f64).ceil() as usize;
-        let square = errors.iter().map(|error| error * error).sum::<f64>();
+    fn from_errors(errors: Vec<f64>, of_pixels: usize, tolerance: Option<f64>) -> Self {
         let above_tolerance = tolerance.map(|t| errors.iter().filter(|error| **error > t).count());
+        let Errors { pixels, largest, of_999_in_1000, rms } = Errors::of(errors);
         Certificate {
             pixels,
-            largest_error: errors.last().copied().unwrap_or(0.0),
-            error_of_999_in_1000: rank.checked_sub(1).map_or(0.0, |index| errors[index]),
-            rms_error: (square / pixels.max(1) as f64).sqrt(),
+            largest_error: largest,
+            error_of_999_in_1000: of_999_in_1000,
+            rms_error: rms,
             above_tolerance,
             statement: statement(pixels, of_pixels, above_tolerance),
         }
@@ -87,12 +81,6 @@ fn statement(pixels: usize, of_pixels: usize, above_tolerance: Option<usize>) ->
         }
         Some(above) => format!("{above} of {pixels} above tolerance"),
     }
-}
-
-/// Largest difference over the channels; a NaN counts as infinite.
-fn difference(found: [f32; 4], truth: [f64; 4]) -> f64 {
-    let channels = found.iter().zip(truth).map(|(&found, truth)| (f64::from(found) - truth).abs());
-    channels.map(|d| if d.is_nan() { f64::INFINITY } else { d }).fold(0.0, f64::max)
 }
 
 /// `count` different numbers below `of`, or all of them.
@@ -145,12 +133,6 @@ mod tests {
             certificate.statement,
             "0 of 3000 above tolerance: fewer than 0.10 % of all pixels, at 95 % confidence"
         );
-    }
-
-    #[test]
-    fn a_pixel_that_is_no_number_is_infinitely_wrong() {
-        assert_eq!(difference([f32::NAN, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]), f64::INFINITY);
-        assert_eq!(difference([0.0, 0.25, 0.0, 1.0], [0.0, 0.5, 0.125, 1.0]), 0.25);
     }
 
     #[test]

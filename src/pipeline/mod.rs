@@ -2,6 +2,7 @@
 //! labels: load, plan, classify, clean, measure, write.
 
 mod analytic;
+mod auto;
 mod certify;
 mod clip;
 mod compare;
@@ -13,6 +14,7 @@ mod measure;
 pub mod memory;
 mod sidecar;
 mod stack;
+mod study;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -32,6 +34,7 @@ pub use load::load;
 pub use measure::{StageTime, peak_memory_bytes};
 pub use sidecar::Sidecar;
 pub use stack::{StackOutcome, StackSidecar, composite};
+pub use study::{study, write_study};
 
 use measure::Stopwatch;
 use sidecar::Made;
@@ -79,9 +82,10 @@ pub struct Outcome {
 pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Outcome> {
     let mut stopwatch = Stopwatch::start(progress);
     let scan = stopwatch.time("load", || load(spec, options))?;
-    let plan = stopwatch.time("plan", || plan(spec, &scan, options))?;
+    let (info, plan) = stopwatch.time("plan", || planned(spec, &scan, options))?;
     memory::check(&plan, options)?;
     let (scan, labels) = mask::classified(scan, &plan, &mut stopwatch)?;
+    let (plan, choice) = auto::settled((spec, &info), &scan.volume, plan, options, &mut stopwatch)?;
     let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
     prepare_folder(&plan.output.path)?;
     let rendered = stopwatch.time("integrate", || integrate(&scan, &plan, progress))?;
@@ -92,7 +96,8 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
     stopwatch.time("encode", || {
         encode(&rendered.image, &plan.output, &texts(&rendered.statistics.kernel, &pixels_sha256))
     })?;
-    let made = Made { labels, clipped, rendered: &rendered, pixels_sha256, certificate, stages: stopwatch.finish() };
+    let made =
+        Made { labels, choice, clipped, rendered: &rendered, pixels_sha256, certificate, stages: stopwatch.finish() };
     let sidecar = Sidecar::new(spec, &scan, &plan, made);
     let sidecar_path = sidecar.write_beside(&plan.output.path)?;
     refuse_above_tolerance(&plan.output.path, sidecar.certificate.as_ref())?;
@@ -106,10 +111,26 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
 pub fn picture(spec: &Spec, progress: Progress<'_>) -> Result<Rendered> {
     let (mut stopwatch, options) = (Stopwatch::start(progress), Options::default());
     let scan = load(spec, &options)?;
-    let plan = plan(spec, &scan, &options)?;
+    let (info, plan) = planned(spec, &scan, &options)?;
     memory::check(&plan, &options)?;
     let (scan, _) = mask::classified(scan, &plan, &mut stopwatch)?;
+    let (plan, _) = auto::settled((spec, &info), &scan.volume, plan, &options, &mut stopwatch)?;
     integrate(&scan, &plan, progress)
+}
+
+/// The plan for a scan as [`plan`] makes it; where the pipeline leaves the method to measurements, these are made.
+///
+/// # Errors
+/// As [`plan`], and those of the integrators.
+pub fn settled_plan(spec: &Spec, scan: Scan, options: &Options) -> Result<Plan> {
+    let (info, plan) = planned(spec, &scan, options)?;
+    if auto::wanted(spec).is_none() {
+        return Ok(plan);
+    }
+    memory::check(&plan, options)?;
+    let mut stopwatch = Stopwatch::start(&|_| ());
+    let (scan, _) = mask::classified(scan, &plan, &mut stopwatch)?;
+    Ok(auto::settled((spec, &info), &scan.volume, plan, options, &mut stopwatch)?.0)
 }
 
 /// The plan for a scan, with its picture where the caller wants it.
@@ -117,9 +138,15 @@ pub fn picture(spec: &Spec, progress: Progress<'_>) -> Result<Rendered> {
 /// # Errors
 /// As [`Plan::new`], and `Fault::Spec` for a picture whose suffix names no format.
 pub fn plan(spec: &Spec, scan: &Scan, options: &Options) -> Result<Plan> {
+    Ok(planned(spec, scan, options)?.1)
+}
+
+/// The plan, and the metadata that it was made for.
+fn planned(spec: &Spec, scan: &Scan, options: &Options) -> Result<(VolumeInfo, Plan)> {
     let labels = scan.labels.as_ref().map(LabelInfo::from);
     let info = VolumeInfo { reading_bytes: scan.reading_bytes, labels, ..VolumeInfo::from(&scan.volume) };
-    Plan::new(spec, &info, options.output.as_deref())
+    let plan = Plan::new(spec, &info, options.output.as_deref())?;
+    Ok((info, plan))
 }
 
 fn integrate(scan: &Scan, plan: &Plan, progress: Progress<'_>) -> Result<Rendered> {
@@ -153,7 +180,10 @@ fn refuse_above_tolerance(picture: &Path, certificate: Option<&Certificate>) -> 
             Err(Error::new(Fault::Tolerance, "the picture is not within its tolerance")
                 .at(picture)
                 .found(format!("{statement}, the largest error {largest_error:.3e}"))
-                .remedy("report it with the pipeline: the method's bound should have held"))
+                .remedy(
+                    "report it with the pipeline: the method's bound should have held; a method that integrate: auto \
+                    chose has been measured and has none, and integrate: exact has",
+                ))
         }
         _ => Ok(()),
     }

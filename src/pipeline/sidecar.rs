@@ -15,6 +15,7 @@ use crate::integrate::Rendered;
 use crate::io::{Scan, whole_file};
 use crate::plan::{self, Method, Plan};
 use crate::spec::Spec;
+use crate::study::Choice;
 use crate::volume::Volume;
 
 /// What the sidecar says.
@@ -36,6 +37,9 @@ pub struct Sidecar {
     pub picture: PictureRecord,
     /// How the integral was computed.
     pub method: MethodRecord,
+    /// What was measured to choose the method, where the pipeline leaves it to measurements.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choice: Option<Choice>,
     /// The error found by the oracle, where the pipeline asks for that.
     pub certificate: Option<Certificate>,
     /// Voxels outside the window of values.
@@ -127,6 +131,7 @@ pub struct MethodRecord {
 /// What a run has made by the time it writes its sidecar.
 pub(super) struct Made<'a> {
     pub(super) labels: Option<LabelsRecord>,
+    pub(super) choice: Option<Choice>,
     pub(super) clipped: Clipped,
     pub(super) rendered: &'a Rendered,
     pub(super) pixels_sha256: String,
@@ -148,7 +153,8 @@ impl Sidecar {
             volume: VolumeRecord::from(&scan.volume),
             labels: made.labels,
             picture: PictureRecord::new(&plan.output.path, plan.scene.camera.size(), made.pixels_sha256),
-            method: MethodRecord::new(&plan.method, made.rendered),
+            method: MethodRecord::new(plan, made.rendered),
+            choice: made.choice,
             certificate: made.certificate,
             clipped: made.clipped,
             stages: made.stages,
@@ -210,17 +216,17 @@ impl From<&Volume> for VolumeRecord {
 }
 
 impl MethodRecord {
-    fn new(method: &Method, rendered: &Rendered) -> Self {
-        let (name, tolerance) = match method {
-            Method::Exact(exact) => ("exact", Some(exact.tolerance)),
-            Method::March(_) => ("march", None),
-            Method::Reference => ("reference", None),
+    fn new(plan: &Plan, rendered: &Rendered) -> Self {
+        let name = match plan.method {
+            Method::Exact(_) => "exact",
+            Method::March(_) => "march",
+            Method::Reference => "reference",
         };
         let statistics = &rendered.statistics;
         MethodRecord {
             name,
             kernel: statistics.kernel.clone(),
-            tolerance,
+            tolerance: plan.tolerance(),
             error_bound: statistics.error_bound,
             samples: statistics.samples,
             rays: statistics.rays,

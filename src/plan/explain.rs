@@ -19,6 +19,9 @@ pub fn explain(plan: &Plan) -> String {
     let (when, most) = plan.peak();
     line(&mut text, "memory", &format!("{} at peak, while {when}", bytes(most)));
     line(&mut text, "work", &plan.work.describe());
+    if let Some(chosen) = &plan.chosen {
+        line(&mut text, "chosen", &chosen.because);
+    }
     text.push('\n');
     if !plan.layers.is_empty() {
         line(&mut text, "layers", &layer_names(plan));
@@ -188,6 +191,7 @@ pub fn explain_json(plan: &Plan) -> Value {
             "size": camera.size()
         },
         "method": plan.method,
+        "chosen_because": plan.chosen.as_ref().map(|chosen| chosen.because.as_str()),
         "certify": plan.certify,
         "output": { "path": plan.output.path, "format": plan.output.format },
         "not_computed": plan.not_computed,

@@ -9,12 +9,23 @@ use crate::spec::{
     LatticeName, MarchSpec, OrderName, ReflectionName, RuleName, Spec, TableSpec,
 };
 
+/// Why measurements chose a method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chosen {
+    /// In a sentence.
+    pub because: String,
+    /// Error that was asked for, of a channel of a pixel, linear and premultiplied; `None` where a time was.
+    pub tolerance: Option<f64>,
+}
+
 pub(super) fn resolve(spec: &Spec, volume: &VolumeInfo) -> Method {
     match &spec.pipeline.integrate {
         None => Method::Exact(exact(None)),
         Some(IntegrateSpec::Exact(settings)) => Method::Exact(exact(settings.tolerance)),
         Some(IntegrateSpec::March(settings)) => Method::March(march(spec, settings, volume)),
         Some(IntegrateSpec::Reference) => Method::Reference,
+        // What keeps the tolerance for certain, until something has been measured.
+        Some(IntegrateSpec::Auto(settings)) => Method::Exact(exact(settings.tolerance)),
     }
 }
 

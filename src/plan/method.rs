@@ -48,6 +48,25 @@ pub struct March {
     pub reflection: Reflection,
 }
 
+impl March {
+    /// Plain settings: front to back, from each ray's entry, to its end, the transfer function as it is defined.
+    pub const fn plain(rule: SampleRule, step_mm: f64) -> Self {
+        March {
+            step_mm,
+            rule,
+            order: Order::FrontToBack,
+            colors: Colors::Associated,
+            emission: Emission::PerLength,
+            lattice: Lattice::PerRay,
+            bisections: 0,
+            jitter: None,
+            termination_transmittance: 0.0,
+            table: None,
+            reflection: Reflection::BlinnPhong,
+        }
+    }
+}
+
 /// A transfer function sampled over the range of the volume's own values and gradient magnitudes, looked up as graphics
 /// hardware looks up a texture: see [`crate::classify::Tabulated`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -23,13 +23,14 @@ mod stages;
 mod volume_info;
 mod voxels;
 mod warnings;
-mod work;
 mod widgets;
+mod work;
 
 pub use classification::{Classification, CleanStep, Tissue};
 pub use crop::Crop;
 use effects::{Resolved, Surroundings};
 pub use explain::{explain, explain_json};
+pub use integrator::Chosen;
 pub use layers::{Layer, preset_terms};
 pub use mask::LabelClasses;
 pub use method::{
@@ -39,8 +40,8 @@ pub use output::{Format, Output};
 pub use stack::StackPlan;
 pub use stages::{Omission, Stage};
 pub use volume_info::{LabelInfo, Storage, VolumeInfo};
-pub use work::Work;
 pub use widgets::{LayerWidgets, WidgetWeight, widgets};
+pub use work::Work;
 
 use std::path::Path;
 
@@ -58,6 +59,8 @@ pub struct Plan {
     pub scene: Scene,
     /// How the volume rendering integral is computed.
     pub method: Method,
+    /// Why this method, where the pipeline leaves it to measurements and they were made.
+    pub chosen: Option<Chosen>,
     /// The layers whose sum is the scene's transfer function, in the order written; for classification.
     pub layers: Vec<Layer>,
     /// How the volume's colours are understood; `None` for a volume of values.
@@ -90,6 +93,30 @@ impl Plan {
     /// `Fault::Spec` for what only the volume shows to be impossible, such as a preset in HU for values that are not,
     /// and for a picture whose suffix names no format.
     pub fn new(spec: &Spec, volume: &VolumeInfo, output: Option<&Path>) -> Result<Self> {
+        Plan::with(spec, volume, output, integrator::resolve(spec, volume), None)
+    }
+
+    /// The same by a method that measurements have chosen (`integrate: auto`).
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn measured(
+        spec: &Spec,
+        volume: &VolumeInfo,
+        output: Option<&Path>,
+        method: Method,
+        chosen: Chosen,
+    ) -> Result<Self> {
+        Plan::with(spec, volume, output, method, Some(chosen))
+    }
+
+    fn with(
+        spec: &Spec,
+        volume: &VolumeInfo,
+        output: Option<&Path>,
+        method: Method,
+        chosen: Option<Chosen>,
+    ) -> Result<Self> {
         let output = Output::resolve(spec, output)?;
         let colors = colors::resolve(spec, volume)?;
         let [window, gradient_range] = layers::domain(&spec.pipeline);
@@ -114,7 +141,6 @@ impl Plan {
             background: light.background,
             effects: Effects { mask, ..effects },
         };
-        let method = integrator::resolve(spec, volume);
         let demand = Demand {
             gradient: scene.shading.as_ref().is_some_and(Shading::is_lit),
             gradient_magnitude: scene.transfer_functions().any(TransferFunction::reads_gradient),
@@ -126,6 +152,7 @@ impl Plan {
         let mut plan = Plan {
             scene,
             method,
+            chosen,
             layers,
             colors,
             label_classes,
@@ -145,6 +172,15 @@ impl Plan {
         plan.warnings = warnings::of(&plan, spec, volume);
         plan.warnings.extend(warnings);
         Ok(plan)
+    }
+
+    /// The error that was asked for, where one was.
+    pub fn tolerance(&self) -> Option<f64> {
+        match (&self.method, &self.chosen) {
+            (_, Some(Chosen { tolerance: Some(tolerance), .. })) => Some(*tolerance),
+            (Method::Exact(exact), _) => Some(exact.tolerance),
+            (Method::March(_) | Method::Reference, _) => None,
+        }
     }
 
     /// Bytes on the heap at peak, estimated; the program and its threads' stacks take some 10 MB beside it.

@@ -75,6 +75,12 @@ impl Camera {
         Ok(Camera { position_mm, frame, projection, size })
     }
 
+    /// The same view in a picture of another size, at least 1 x 1; of another shape, it shows more or less at the sides.
+    #[must_use]
+    pub fn with_size(self, size: [usize; 2]) -> Self {
+        Camera { size: size.map(|n| n.max(1)), ..self }
+    }
+
     /// Width and height of the picture in pixels.
     pub fn size(&self) -> [usize; 2] {
         self.size

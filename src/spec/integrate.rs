@@ -13,6 +13,22 @@ pub enum IntegrateSpec {
     March(MarchSpec),
     /// The oracle in f64, for every pixel: slow.
     Reference,
+    /// The quickest setting that keeps a tolerance, or the most accurate one within a time, as measured on this scene and
+    /// this machine.
+    Auto(AutoSpec),
+}
+
+/// What the chosen setting must keep: one of the two.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AutoSpec {
+    /// Largest error of a channel of a pixel, linear and premultiplied, on random pixels; above 0 and below 1. 1/255 by
+    /// default. Not together with `budget_ms`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// Time for integrating the picture, ms, above 0. Not together with `tolerance`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub budget_ms: Option<f64>,
 }
 
 /// Settings of the exact integrator.

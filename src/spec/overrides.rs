@@ -4,9 +4,10 @@ use super::tree::{self, Key, Node, Origin, Value};
 use crate::error::{Error, Fault, Result};
 
 /// Keys that exclude each other, by their paths: a scan is one or the other, and so is a method.
-const ALTERNATIVES: [&[&str]; 4] = [
+const ALTERNATIVES: [&[&str]; 5] = [
     &["volume.source", "volume.phantom", "volume.analytic"],
-    &["integrate.exact", "integrate.march", "integrate.reference"],
+    &["integrate.exact", "integrate.march", "integrate.reference", "integrate.auto"],
+    &["integrate.auto.tolerance", "integrate.auto.budget_ms"],
     &["integrate.march.step_mm", "integrate.march.step_voxels"],
     &["effects.fog.linear", "effects.fog.exp", "effects.fog.exp2"],
 ];

@@ -6,7 +6,7 @@ use super::manufactured::{SIDE_MM, function, looking, oblique, rays, sampled, sm
 use super::report::Check;
 use super::{Integrator, chord_mm, interpolate, largest_difference, subjects};
 use crate::error::Result;
-use crate::plan::{Colors, Order, SampleRule};
+use crate::plan::{Colors, March, Order, SampleRule};
 use crate::scene::Scene;
 use crate::transfer::{Optics, TransferFunction};
 use crate::volume::Volume;
@@ -119,7 +119,7 @@ fn picture(
     rule: SampleRule,
     change: impl Fn(&mut crate::plan::March),
 ) -> Result<Vec<[f64; 4]>> {
-    let mut settings = subjects::settings(rule, STEP_MM);
+    let mut settings = March::plain(rule, STEP_MM);
     change(&mut settings);
     subjects::marched(volume, scene, settings)
 }

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::integrate;
 use crate::integrate::exact::{Precision, tracer};
 use crate::oracle::Oracle;
-use crate::plan::{Colors, Emission, Lattice, March, Method, Order, Reflection, SampleRule};
+use crate::plan::{March, Method, SampleRule};
 use crate::scene::Scene;
 use crate::volume::Volume;
 
@@ -20,26 +20,9 @@ pub(super) const RULES: [(&str, Orders, SampleRule); 3] = [
     ("march/trapezoid", Orders::plain(2.0), SampleRule::Trapezoid),
 ];
 
-/// Plain settings: front to back, from each ray's entry, to its end.
-pub(super) fn settings(rule: SampleRule, step_mm: f64) -> March {
-    March {
-        step_mm,
-        rule,
-        order: Order::FrontToBack,
-        colors: Colors::Associated,
-        emission: Emission::PerLength,
-        lattice: Lattice::PerRay,
-        bisections: 0,
-        jitter: None,
-        termination_transmittance: 0.0,
-        table: None,
-        reflection: Reflection::BlinnPhong,
-    }
-}
-
 /// A march by a rule.
 pub(super) fn march(rule: SampleRule) -> impl Fn(&Volume, &Scene, f64) -> Result<Vec<[f64; 4]>> {
-    move |volume, scene, step_mm| marched(volume, scene, settings(rule, step_mm))
+    move |volume, scene, step_mm| marched(volume, scene, March::plain(rule, step_mm))
 }
 
 /// A picture by marching.

@@ -43,7 +43,8 @@ fn unknown_keys_and_choices_come_with_a_suggestion() {
     );
     check_after(
         "integrate: { «marsh»: { step_mm: 1 } }\n",
-        "there is no such choice (integrate): found marsh, expected one of exact, march, reference\n  \
+        "there is no such choice (integrate): found marsh, expected one of exact, march, reference, \
+         auto\n  \
          remedy: did you mean march?",
     );
     check_after(
@@ -152,6 +153,10 @@ fn numbers_out_of_range_are_found() {
     check_after(
         "camera: { fov_degrees: «180» }\n",
         "a value is out of range (camera.fov_degrees): found 180, expected an angle above 0 and below 180 degrees",
+    );
+    check_after(
+        "integrate: { auto: { budget_ms: «0» } }\n",
+        "a value is out of range (integrate.auto.budget_ms): found 0, expected a number above 0",
     );
     check_after(
         "integrate: { exact: { tolerance: «0» } }\n",

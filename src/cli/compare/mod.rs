@@ -128,7 +128,7 @@ impl Compare {
 }
 
 /// A number, or a fraction such as `1/255`; finite and at least 0.
-fn number(text: &str) -> Result<f64, String> {
+pub(super) fn number(text: &str) -> Result<f64, String> {
     let part = |text: &str| text.trim().parse::<f64>().ok();
     let value = match text.split_once('/') {
         None => part(text),

@@ -13,8 +13,8 @@ use super::{Check, join};
 use crate::error::Result;
 use crate::spec::source::Source;
 use crate::spec::{
-    AttenuationSpec, Bits, CompatibilityName, ImageSpec, IntegrateSpec, LatticeName, LayerSpec, MarchSpec, OrderName,
-    PhantomSpec, Pipeline, RuleName, ValuesName, VolumeSpec,
+    AttenuationSpec, AutoSpec, Bits, CompatibilityName, ImageSpec, IntegrateSpec, LatticeName, LayerSpec, MarchSpec,
+    OrderName, PhantomSpec, Pipeline, RuleName, ValuesName, VolumeSpec,
 };
 use crate::transfer::attenuation::ENERGIES_KEV;
 
@@ -124,7 +124,17 @@ fn check_integrate(check: Check<'_>, integrate: &IntegrateSpec) -> Result<()> {
         }
         IntegrateSpec::March(march) => check_march(check, march),
         IntegrateSpec::Reference => Ok(()),
+        IntegrateSpec::Auto(auto) => check_auto(check, auto),
     }
+}
+
+fn check_auto(check: Check<'_>, auto: &AutoSpec) -> Result<()> {
+    if auto.tolerance.is_some() {
+        check.exactly_one("integrate.auto", &[("tolerance", true), ("budget_ms", auto.budget_ms.is_some())])?;
+    }
+    let within = auto.tolerance.is_none_or(|t| t > 0.0 && t < 1.0);
+    check.require("integrate.auto.tolerance", within, "a number above 0 and below 1, such as 1/255")?;
+    check.above_zero("integrate.auto.budget_ms", auto.budget_ms)
 }
 
 fn check_march(check: Check<'_>, march: &MarchSpec) -> Result<()> {
