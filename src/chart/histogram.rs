@@ -24,7 +24,7 @@ pub struct Caption {
 }
 
 /// Upper left corner and size of the counts, pixels.
-const CORNER: [f64; 2] = [110.0, 196.0];
+const CORNER: [f64; 2] = [110.0, 200.0];
 const SIZE: [f64; 2] = [768.0, 512.0];
 const PICTURE_WIDTH: f64 = 1160.0;
 /// Sizes of letters, pixels.
@@ -113,9 +113,12 @@ impl Frame {
             0 => None,
             count => Some((scale.share(count) * (LEVELS - 1) as f64).round() as usize),
         };
+        // On whole pixels, so that nothing white shows between neighbours.
+        let column = |i: usize| self.x.pixel(counts.x().edge(i)).round();
+        let row = |j: usize| self.y.pixel(counts.y().edge(j)).round();
         let mut levels: Vec<Outline> = (0..LEVELS).map(|_| Outline::default()).collect();
         for j in 0..counts.y().bins() {
-            let (top, foot) = (self.y.pixel(counts.y().edge(j + 1)), self.y.pixel(counts.y().edge(j)));
+            let (top, foot) = (row(j + 1), row(j));
             let mut begun = 0;
             for i in 1..=counts.x().bins() {
                 let here = level(begun, j);
@@ -123,7 +126,7 @@ impl Frame {
                     continue;
                 }
                 if let Some(here) = here {
-                    let (left, right) = (self.x.pixel(counts.x().edge(begun)), self.x.pixel(counts.x().edge(i)));
+                    let (left, right) = (column(begun), column(i));
                     levels[here].rect([left, top], [right - left, foot - top]);
                 }
                 begun = i;
@@ -159,7 +162,7 @@ impl Frame {
 /// Which colour is how many voxels.
 fn color_bar(drawing: &mut Drawing, highest: u64) {
     let ([_, top], [_, height]) = (CORNER, SIZE);
-    let (left, width) = (CORNER[0] + SIZE[0] + 132.0, 20.0);
+    let (left, width) = (CORNER[0] + SIZE[0] + 136.0, 20.0);
     let scale = Logarithmic { highest };
     let band = height / LEVELS as f64;
     for n in 0..LEVELS {

@@ -12,7 +12,8 @@
 //!   takes steps of half the smallest voxel edge, by the midpoint rule, along the trilinearly interpolated gradient. It ends
 //!   before a step that would leave the domain or along which the value would not rise (fall): an extremum; and before one
 //!   to where the length of the gradient, having fallen, rises again: an inflection point, where the next boundary begins.
-//!   It ends at the first point with `|∇| < flat_per_mm`, or after 256 steps.
+//!   It ends at the first point with `|∇| < flat_per_mm`, or after 256 steps. A voxel at an inflection point
+//!   itself is thus between the outer two of the three materials.
 //!
 //! So a material is a peak on the diagonal and a boundary a peak beside it, at the row and column of its two materials, where
 //! the joint histogram has an arc.

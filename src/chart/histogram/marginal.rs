@@ -7,7 +7,7 @@ use crate::histogram::{Axis, Counts};
 
 /// Height of a marginal, and its distance from the histogram, pixels.
 const HEIGHT: f64 = 88.0;
-const GAP: f64 = 10.0;
+const GAP: f64 = 16.0;
 const FILL: &str = "#7f93ab";
 const LETTERS: f64 = 12.0;
 
@@ -49,7 +49,7 @@ fn bars(
     drawing.stroke(&lines, super::GRID, 1.0);
     let mut points = vec![place(along.at, 0.0)];
     for (n, count) in counts.iter().enumerate() {
-        points.extend([axis.edge(n), axis.edge(n + 1)].map(|x| place(along.pixel(x), up(*count))));
+        points.extend([axis.edge(n), axis.edge(n + 1)].map(|x| place(along.pixel(x).round(), up(*count))));
     }
     points.push(place(along.end, 0.0));
     let mut outline = Outline::default();
