@@ -7,6 +7,7 @@ const README: &str = include_str!("../README.md");
 const ARCHITECTURE: &str = include_str!("../ARCHITECTURE.md");
 const TESTS_README: &str = include_str!("README.md");
 const PIPELINES_README: &str = include_str!("../pipelines/README.md");
+const PRESETS_README: &str = include_str!("../presets/README.md");
 
 /// The words of each command line that starts pellucid in a document's code blocks, from its sub-command on.
 fn commands(document: &str) -> Vec<Vec<&str>> {
@@ -100,10 +101,32 @@ fn the_keys_of_a_pipeline_are_explained() {
     assert!(unexplained.is_empty(), "pipelines/README.md says nothing of {unexplained:?}");
 }
 
+/// Every preset has a row, and a picture unless no scan shows it; a label stands for one tissue.
+#[test]
+fn the_presets_are_shown() {
+    let mut labels = std::collections::BTreeSet::new();
+    for (name, _) in pellucid::spec::BUILT_IN_PRESETS {
+        let row = PRESETS_README.lines().find(|line| line.contains(&format!("[{name}]({name}.yaml)")));
+        let row = row.unwrap_or_else(|| panic!("presets/README.md has no row of {name}"));
+        let preset = pellucid::spec::built_in_preset(name).expect("built in").expect("valid").preset;
+        assert!(row.contains(&preset.description.unwrap_or_default()), "{name} is described as in its file: {row}");
+        assert!(row.contains("pictures/") || row.contains("no public scan"), "{name} has no picture: {row}");
+        if let Some(tissue) = preset.tissue {
+            assert!(labels.insert(tissue.label), "{name}: label {} is taken", tissue.label);
+        }
+    }
+}
+
 #[test]
 fn links_between_documents_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let documents = [("", README), ("", ARCHITECTURE), ("tests", TESTS_README), ("pipelines", PIPELINES_README)];
+    let documents = [
+        ("", README),
+        ("", ARCHITECTURE),
+        ("tests", TESTS_README),
+        ("pipelines", PIPELINES_README),
+        ("presets", PRESETS_README),
+    ];
     for (folder, document) in documents {
         for link in linked_files(document) {
             assert!(

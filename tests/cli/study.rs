@@ -21,7 +21,8 @@ fn a_study_is_a_folder_of_tables_charts_and_maps() {
 #[test]
 fn arguments_of_a_study_that_mean_nothing_are_refused() {
     for wrong in [["--tolerance", "0"], ["--tolerance", "1"], ["--seconds", "-1"], ["--pixels", "0"]] {
-        let run = pellucid(&["study", "x.yaml", "-o", "out", wrong[0], wrong[1]]).failure(2);
+        let argument = format!("{}={}", wrong[0], wrong[1]);
+        let run = pellucid(&["study", "x.yaml", "-o", "out", &argument]).failure(2);
         assert!(run.stderr.contains(wrong[0]), "{wrong:?}: found {}", run.stderr);
     }
 }

@@ -102,7 +102,7 @@ mod tests {
     fn a_step_behind_the_plane_it_enters_by_and_one_sample_beyond_the_other() {
         assert_eq!(samples(&[(1.0, 2.25)], OPEN, 1.0), Some((3.25, 5)), "3.25 to 7.25");
         assert_eq!(samples(&[(-1.0, 5.25)], OPEN, 1.0), Some((1.0, 6)), "1 to 6, one of them beyond");
-        assert_eq!(samples(&[(-1.0, 5.25)], OPEN, 0.75), Some((0.75, 8)), "0.75 to 6");
+        assert_eq!(samples(&[(-1.0, 5.25)], OPEN, 0.75), Some((0.75, 7)), "0.75 to 5.25, on the plane");
         assert_eq!(samples(&[(1.0, 2.0), (-1.0, 2.5)], OPEN, 1.0), Some((3.0, 2)), "a slab thinner than a step");
         assert_eq!(samples(&[(1.0, 7.5)], OPEN, 1.0), None, "the first sample would be outside");
         assert_eq!(samples(&[(-1.0, -1.0)], OPEN, 1.0), None, "nothing is left");

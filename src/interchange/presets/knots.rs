@@ -106,8 +106,8 @@ mod tests {
     fn a_bound_is_kept_with_few_knots() {
         let refined = refine(&[0.0, 1.0], 1e-3, parabola).unwrap();
         assert!(refined.max_deviation <= 1e-3, "found {}", refined.max_deviation);
-        // Lines over a parabola of pieces h are off by h²/4.
-        assert_eq!(refined.positions.len(), 17, "found {:?}", refined.positions);
+        // Lines over a parabola of pieces h are off by h²/4, and what is measured may take 0.9 of the bound.
+        assert_eq!(refined.positions.len(), 33, "found {:?}", refined.positions);
         assert!(refine(&[0.0, 1.0], 1e-9, parabola).is_err(), "more than 4096 knots");
     }
 
