@@ -70,7 +70,7 @@ impl Chord {
     }
 
     /// What is left of it from a distance along the ray on, mm; `None` if that is nothing.
-    pub fn from_mm(self, from_mm: f64) -> Option<Self> {
+    pub fn beyond_mm(self, from_mm: f64) -> Option<Self> {
         let skipped_mm = (from_mm - self.entry_mm).max(0.0);
         (skipped_mm < self.length_mm).then(|| Chord {
             entry_mm: self.entry_mm + skipped_mm,

@@ -17,13 +17,12 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     if plan.colors.is_some() && most == 0.0 {
         warnings.push("nothing in this volume absorbs or emits: the picture will show the background alone".to_owned());
     }
-    if plan.colors.is_none() && reads_transfer_function(&plan.scene) {
-        if least < low || most > high {
-            warnings.push(format!(
-                "values from {least} to {most} go beyond the window {low} to {high} and look like its ends; \
-                 normalise.hu widens it"
-            ));
-        }
+    let is_read = plan.colors.is_none() && reads_transfer_function(&plan.scene);
+    if is_read && (least < low || most > high) {
+        warnings.push(format!(
+            "values from {least} to {most} go beyond the window {low} to {high} and look like its ends; \
+             normalise.hu widens it"
+        ));
     }
     let is_dark = |tf| reads_transfer_function(&plan.scene) && shows_nothing(tf, volume.value_range);
     if plan.colors.is_none() && shown(plan, volume).all(is_dark) {

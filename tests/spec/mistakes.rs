@@ -97,7 +97,7 @@ fn values_of_the_wrong_kind_are_named() {
     check_after(
         "integrate: «{ march: {}, exact: {} }»\n",
         "a value is of the wrong kind (integrate): found a mapping with the keys march and 1 more, expected one of \
-         exact, march, reference",
+         exact, march, reference, auto",
     );
 }
 

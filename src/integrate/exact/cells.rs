@@ -38,7 +38,7 @@ impl<'a> Domain<'a> {
     }
 
     /// The part inside the hull of a ray from a lattice point, and where along it nothing is clipped away, mm.
-    pub(super) fn from_voxel(&self, voxel: [usize; 3], direction: DVec3) -> Option<(IndexRay, [f64; 2])> {
+    pub(super) fn inside_from_voxel(&self, voxel: [usize; 3], direction: DVec3) -> Option<(IndexRay, [f64; 2])> {
         let mut index = DVec3::from_array(voxel.map(|i| i as f64));
         if let Some(places) = self.slices {
             index.z = places[voxel[2]];

@@ -69,7 +69,7 @@ struct Occluder<'a> {
 
 impl Occluder<'_> {
     fn transmittance<M: Medium<f64>>(&self, medium: &M, voxel: [usize; 3], direction: DVec3) -> f64 {
-        let Some((inside, [from_mm, to_mm])) = self.domain.from_voxel(voxel, direction) else { return 1.0 };
+        let Some((inside, [from_mm, to_mm])) = self.domain.inside_from_voxel(voxel, direction) else { return 1.0 };
         let mut transmittance = 1.0;
         let mut splits = Splits::default();
         for segment in self.domain.segments(inside) {

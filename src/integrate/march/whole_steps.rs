@@ -36,7 +36,7 @@ impl WholeSteps {
     pub(super) fn chord(&self, grid: &Grid, ray: Ray) -> Option<Chord> {
         let [from_mm, to_mm] = self.planes.interval_mm(&ray)?;
         let chord = Chord::new(grid, &Clip::default(), ray)?;
-        if to_mm <= chord.entry_mm { None } else { chord.from_mm(from_mm) }
+        if to_mm <= chord.entry_mm { None } else { chord.beyond_mm(from_mm) }
     }
 
     /// The samples that are left of a chord's whole steps; `None` if there are none.
