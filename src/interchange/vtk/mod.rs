@@ -4,7 +4,7 @@
 //! function is a table of the definition, and the gradient magnitude is our own, as a second channel of the volume. VTK
 //! corrects the opacities of a 1D transfer function for the step; those of a 2D one the script corrects.
 //!
-//! Projections and surfaces are blend modes of VTK's mappers: see [`blend`]. What is clipped along the voxels' axes in a
+//! Projections and surfaces are blend modes of VTK's mappers: see `blend`. What is clipped along the voxels' axes in a
 //! scene of light is VTK's cropping, in voxels; all else that is clipped are its clipping planes, of which it has eight.
 
 mod blend;
