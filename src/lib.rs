@@ -14,6 +14,7 @@
 pub mod demand;
 pub mod error;
 pub mod math;
+pub mod simd;
 
 pub mod image;
 pub mod scene;

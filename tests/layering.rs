@@ -32,7 +32,8 @@ const NEVER: [(&str, &str, &str); 2] = [
 ];
 
 /// Uses that the layers forbid and are right all the same: `(user, used, why)`.
-const EXCEPTIONS: [(&str, &str, &str); 3] = [
+const EXCEPTIONS: [(&str, &str, &str); 4] = [
+    ("simd", "math", "registers are numbers: formulas are written once for both"),
     ("scene", "transfer", "a scene holds its transfer function, which knows of no scene"),
     ("volume", "image", "the colours of an RGBA volume are what a picture's are: sRGB"),
     ("scene", "image", "the grey of a projected value is defined by what a display shows: sRGB"),

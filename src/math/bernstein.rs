@@ -4,52 +4,52 @@
 //! within the range of its coefficients; its mean over `[0, 1]` is the mean of its coefficients; and every operation here is
 //! a convex combination, so rounding never exceeds a few units in the last place of the largest coefficient.
 
-use super::{Real, each};
+use super::{Number, Real, each};
 
 /// A cubic in Bernstein form.
 pub type Cubic<R> = [R; 4];
 
 /// `(1 − t) · a + t · b`, in the form that is exact for `a = b`: a plateau stays on the side of a jump that it is on.
 #[inline(always)]
-pub fn lerp<R: Real>(a: R, b: R, t: R) -> R {
+pub fn lerp<R: Number>(a: R, b: R, t: R) -> R {
     a + t * (b - a)
 }
 
 /// Smallest and largest coefficient: an enclosure of the polynomial over `[0, 1]`.
 #[inline(always)]
-pub fn range<R: Real, const N: usize>(b: &[R; N]) -> [R; 2] {
+pub fn range<R: Number, const N: usize>(b: &[R; N]) -> [R; 2] {
     b.iter().skip(1).fold([b[0], b[0]], |[low, high], &x| [low.min(x), high.max(x)])
 }
 
 /// Sum of the coefficients, which is the integral over `[0, 1]` times their number.
 #[inline(always)]
-pub fn sum<R: Real, const N: usize>(b: &[R; N]) -> R {
+pub fn sum<R: Number, const N: usize>(b: &[R; N]) -> R {
     b.iter().skip(1).fold(b[0], |s, &x| s + x)
 }
 
 /// Value at `u`, by de Casteljau's scheme.
 #[inline(always)]
-pub fn value<R: Real>(b: &Cubic<R>, u: R) -> R {
+pub fn value<R: Number>(b: &Cubic<R>, u: R) -> R {
     blossom(b, u, u, u)
 }
 
 /// Derivative at `u`.
 #[inline(always)]
-pub fn slope<R: Real>(b: &Cubic<R>, u: R) -> R {
+pub fn slope<R: Number>(b: &Cubic<R>, u: R) -> R {
     let (p, q, r) = (lerp(b[0], b[1], u), lerp(b[1], b[2], u), lerp(b[2], b[3], u));
     R::from_f64(3.0) * (lerp(q, r, u) - lerp(p, q, u))
 }
 
 /// The polar form (Ramshaw 1989) of a cubic at three arguments.
 #[inline(always)]
-fn blossom<R: Real>(b: &Cubic<R>, u: R, v: R, w: R) -> R {
+fn blossom<R: Number>(b: &Cubic<R>, u: R, v: R, w: R) -> R {
     let (p, q, r) = (lerp(b[0], b[1], u), lerp(b[1], b[2], u), lerp(b[2], b[3], u));
     lerp(lerp(p, q, v), lerp(q, r, v), w)
 }
 
 /// The same cubic over `[from, to]`, mapped to `[0, 1]`.
 #[inline(always)]
-pub fn restrict<R: Real>(b: &Cubic<R>, from: R, to: R) -> Cubic<R> {
+pub fn restrict<R: Number>(b: &Cubic<R>, from: R, to: R) -> Cubic<R> {
     [blossom(b, from, from, from), blossom(b, from, from, to), blossom(b, from, to, to), blossom(b, to, to, to)]
 }
 
@@ -57,7 +57,7 @@ pub fn restrict<R: Real>(b: &Cubic<R>, from: R, to: R) -> Cubic<R> {
 /// exact cubic. A trilinear function is affine in each argument, so its values at the corners of the box spanned by `a` and
 /// `b` are its polar form, and the cubic's coefficients are means of those.
 #[inline(always)]
-pub fn trilinear_along<R: Real>(corners: &[R; 8], a: [R; 3], b: [R; 3]) -> Cubic<R> {
+pub fn trilinear_along<R: Number>(corners: &[R; 8], a: [R; 3], b: [R; 3]) -> Cubic<R> {
     let c = corners;
     // Along x, at a and b, for the four edges (y, z).
     let (x00, x10, x01, x11) =
@@ -82,7 +82,7 @@ pub fn trilinear_along<R: Real>(corners: &[R; 8], a: [R; 3], b: [R; 3]) -> Cubic
 
 /// Product of two cubics, of degree six.
 #[inline(always)]
-pub fn product<R: Real>(a: &Cubic<R>, b: &Cubic<R>) -> [R; 7] {
+pub fn product<R: Number>(a: &Cubic<R>, b: &Cubic<R>) -> [R; 7] {
     // C(3,i) C(3,j) / C(6,i+j)
     const BINOMIAL_3: [f64; 4] = [1.0, 3.0, 3.0, 1.0];
     const BINOMIAL_6: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
@@ -97,13 +97,13 @@ pub fn product<R: Real>(a: &Cubic<R>, b: &Cubic<R>) -> [R; 7] {
 
 /// A cubic as a polynomial of degree six.
 #[inline(always)]
-pub fn elevate<R: Real>(a: &Cubic<R>) -> [R; 7] {
+pub fn elevate<R: Number>(a: &Cubic<R>) -> [R; 7] {
     product(a, &[R::ONE; 4])
 }
 
 /// Product with the linear function from `low` at 0 to `high` at 1; `M` must be `N + 1`.
 #[inline(always)]
-pub fn times_linear<R: Real, const N: usize, const M: usize>(b: &[R; N], low: R, high: R) -> [R; M] {
+pub fn times_linear<R: Number, const N: usize, const M: usize>(b: &[R; N], low: R, high: R) -> [R; M] {
     const { assert!(M == N + 1, "the product has one more coefficient") };
     each(|k| {
         let t = R::from_f64(k as f64 / N as f64);

@@ -3,11 +3,13 @@
 mod absorb;
 pub mod bernstein;
 mod each;
+mod number;
 mod opacity;
 mod real;
 pub mod scattering;
 
 pub use absorb::{absorbed_f32, mean_transmittance_f32};
 pub use each::each;
+pub use number::Number;
 pub use opacity::extinction_per_mm;
 pub use real::Real;

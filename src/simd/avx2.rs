@@ -1,0 +1,241 @@
+//! Eight lanes: AVX2.
+#![expect(unsafe_code, reason = "intrinsics; the module's rules say why they are safe")]
+
+use std::arch::x86_64::*;
+use std::mem::transmute;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use super::lanes::{absorbed, last_pair, mean_transmittance};
+use super::register::arithmetic;
+use super::{Ints, Kernel, Lanes, Mask, Table};
+use crate::math::Number;
+
+/// Runs a kernel compiled for these instructions.
+///
+/// # Safety
+/// The processor must have them.
+#[target_feature(enable = "avx2")]
+pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<F32x8>()
+}
+
+/// Eight f32.
+#[derive(Clone, Copy)]
+pub(crate) struct F32x8(__m256);
+
+/// Eight i32.
+#[derive(Clone, Copy)]
+pub(crate) struct I32x8(__m256i);
+
+/// Eight truths: all bits of a lane, or none.
+#[derive(Clone, Copy)]
+pub(crate) struct Mask8(__m256);
+
+arithmetic!(
+    F32x8,
+    8,
+    __m256,
+    _mm256_add_ps,
+    _mm256_sub_ps,
+    _mm256_mul_ps,
+    _mm256_div_ps,
+    _mm256_min_ps,
+    _mm256_max_ps,
+    _mm256_sqrt_ps,
+    _mm256_xor_ps,
+    _mm256_andnot_ps,
+    _mm256_set1_ps
+);
+
+/// For each set of lanes, their numbers in order.
+const COMPRESSED: [[i32; 8]; 256] = {
+    let mut all = [[0; 8]; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut lane, mut at) = (0, 0);
+        while lane < 8 {
+            if bits >> lane & 1 == 1 {
+                all[bits][at] = lane as i32;
+                at += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    all
+};
+
+// SAFETY, for every block below: values of these types exist only in kernels that `Level::run` has started, so the processor
+// has the instructions; slices are checked to be as long as what is read or written, and indices are clamped to them.
+#[inline(always)]
+fn order(mask: Mask8) -> __m256i {
+    unsafe { _mm256_loadu_si256(COMPRESSED[mask.bits() as usize & 255].as_ptr().cast()) }
+}
+
+#[inline(always)]
+fn clamped(at: I32x8, last: u32) -> __m256i {
+    unsafe { _mm256_min_epu32(at.0, _mm256_set1_epi32(last as i32)) }
+}
+
+impl Lanes for F32x8 {
+    const LANES: usize = 8;
+    type Ints = I32x8;
+    type Mask = Mask8;
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        F32x8(unsafe { _mm256_loadu_ps(from[..8].as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        unsafe { _mm256_storeu_ps(to[..8].as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask8 {
+        Mask8(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Mask8 {
+        Mask8(unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
+        F32x8(unsafe { _mm256_blendv_ps(no.0, yes.0, mask.0) })
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        F32x8(unsafe { _mm256_round_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(self.0) })
+    }
+    #[inline(always)]
+    fn to_ints(self) -> I32x8 {
+        I32x8(unsafe { _mm256_cvttps_epi32(self.0) })
+    }
+    #[inline(always)]
+    fn from_ints(ints: I32x8) -> Self {
+        F32x8(unsafe { _mm256_cvtepi32_ps(ints.0) })
+    }
+    #[inline(always)]
+    fn power_of_two(exponent: I32x8) -> Self {
+        F32x8(unsafe {
+            _mm256_castsi256_ps(_mm256_slli_epi32::<23>(_mm256_add_epi32(exponent.0, _mm256_set1_epi32(127))))
+        })
+    }
+    #[inline(always)]
+    fn pick(table: &Table, at: I32x8) -> Self {
+        let entries = table.entries();
+        let at = clamped(at, (entries.len() - 1) as u32);
+        unsafe {
+            if entries.len() == 16 {
+                let (low, high) = entries.split_at(8);
+                let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(low.as_ptr()), at);
+                let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(high.as_ptr()), at);
+                // Bit 3 of the index, moved to the sign, chooses the half.
+                F32x8(_mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32::<28>(at))))
+            } else {
+                F32x8(_mm256_i32gather_ps::<4>(entries.as_ptr(), at))
+            }
+        }
+    }
+    #[inline(always)]
+    fn pairs_i16(samples: &[i16], at: I32x8) -> [Self; 2] {
+        unsafe {
+            // Two neighbours in one read of 32 bits, the first in its lower half.
+            let both = _mm256_i32gather_epi32::<2>(samples.as_ptr().cast(), clamped(at, last_pair(samples)));
+            let first = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(both));
+            let second = _mm256_srai_epi32::<16>(both);
+            [F32x8(_mm256_cvtepi32_ps(first)), F32x8(_mm256_cvtepi32_ps(second))]
+        }
+    }
+    #[inline(always)]
+    fn pairs_f32(samples: &[f32], at: I32x8) -> [Self; 2] {
+        let at = clamped(at, last_pair(samples));
+        let next = samples[1..].as_ptr();
+        unsafe { [F32x8(_mm256_i32gather_ps::<4>(samples.as_ptr(), at)), F32x8(_mm256_i32gather_ps::<4>(next, at))] }
+    }
+    #[inline(always)]
+    fn compress(self, mask: Mask8) -> Self {
+        F32x8(unsafe { _mm256_permutevar8x32_ps(self.0, order(mask)) })
+    }
+}
+
+impl Default for I32x8 {
+    #[inline(always)]
+    fn default() -> Self {
+        I32x8::splat(0)
+    }
+}
+
+impl Add for I32x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        I32x8(unsafe { _mm256_add_epi32(self.0, other.0) })
+    }
+}
+
+impl Sub for I32x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        I32x8(unsafe { _mm256_sub_epi32(self.0, other.0) })
+    }
+}
+
+impl Ints for I32x8 {
+    type Mask = Mask8;
+
+    #[inline(always)]
+    fn splat(x: i32) -> Self {
+        I32x8(unsafe { _mm256_set1_epi32(x) })
+    }
+    #[inline(always)]
+    fn count() -> Self {
+        I32x8(unsafe { _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7) })
+    }
+    #[inline(always)]
+    fn load(from: &[i32]) -> Self {
+        I32x8(unsafe { _mm256_loadu_si256(from[..8].as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [i32]) {
+        unsafe { _mm256_storeu_si256(to[..8].as_mut_ptr().cast(), self.0) }
+    }
+    #[inline(always)]
+    fn eq(self, other: Self) -> Mask8 {
+        Mask8(unsafe { _mm256_castsi256_ps(_mm256_cmpeq_epi32(self.0, other.0)) })
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask8 {
+        Mask8(unsafe { _mm256_castsi256_ps(_mm256_cmpgt_epi32(other.0, self.0)) })
+    }
+    #[inline(always)]
+    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
+        let [no, yes] = [no, yes].map(|x| unsafe { _mm256_castsi256_ps(x.0) });
+        I32x8(unsafe { _mm256_castps_si256(_mm256_blendv_ps(no, yes, mask.0)) })
+    }
+    #[inline(always)]
+    fn compress(self, mask: Mask8) -> Self {
+        I32x8(unsafe { _mm256_permutevar8x32_epi32(self.0, order(mask)) })
+    }
+}
+
+impl Mask for Mask8 {
+    const ALL: Self = Mask8(unsafe { transmute::<[i32; 8], __m256>([-1; 8]) });
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        Mask8(unsafe { _mm256_and_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        Mask8(unsafe { _mm256_or_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn and_not(self, other: Self) -> Self {
+        Mask8(unsafe { _mm256_andnot_ps(other.0, self.0) })
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        unsafe { _mm256_movemask_ps(self.0) as u32 }
+    }
+}

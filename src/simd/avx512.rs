@@ -1,0 +1,215 @@
+//! Sixteen lanes: AVX-512 F, BW, DQ and VL.
+#![expect(unsafe_code, reason = "intrinsics; the module's rules say why they are safe")]
+
+use std::arch::x86_64::*;
+use std::mem::transmute;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use super::lanes::{absorbed, last_pair, mean_transmittance};
+use super::register::arithmetic;
+use super::{Ints, Kernel, Lanes, Mask, Table};
+use crate::math::Number;
+
+/// Runs a kernel compiled for these instructions.
+///
+/// # Safety
+/// The processor must have them.
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<F32x16>()
+}
+
+/// Sixteen f32.
+#[derive(Clone, Copy)]
+pub(crate) struct F32x16(__m512);
+
+/// Sixteen i32.
+#[derive(Clone, Copy)]
+pub(crate) struct I32x16(__m512i);
+
+/// Sixteen truths.
+#[derive(Clone, Copy)]
+pub(crate) struct Mask16(__mmask16);
+
+arithmetic!(
+    F32x16,
+    16,
+    __m512,
+    _mm512_add_ps,
+    _mm512_sub_ps,
+    _mm512_mul_ps,
+    _mm512_div_ps,
+    _mm512_min_ps,
+    _mm512_max_ps,
+    _mm512_sqrt_ps,
+    _mm512_xor_ps,
+    _mm512_andnot_ps,
+    _mm512_set1_ps
+);
+
+// SAFETY, for every block below: values of these types exist only in kernels that `Level::run` has started, so the processor
+// has the instructions; slices are checked to be as long as what is read or written, and indices are clamped to them.
+impl Lanes for F32x16 {
+    const LANES: usize = 16;
+    type Ints = I32x16;
+    type Mask = Mask16;
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        F32x16(unsafe { _mm512_loadu_ps(from[..16].as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        unsafe { _mm512_storeu_ps(to[..16].as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask16 {
+        Mask16(unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Mask16 {
+        Mask16(unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: Mask16, yes: Self, no: Self) -> Self {
+        F32x16(unsafe { _mm512_mask_blend_ps(mask.0, no.0, yes.0) })
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        F32x16(unsafe { _mm512_roundscale_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(self.0) })
+    }
+    #[inline(always)]
+    fn to_ints(self) -> I32x16 {
+        I32x16(unsafe { _mm512_cvttps_epi32(self.0) })
+    }
+    #[inline(always)]
+    fn from_ints(ints: I32x16) -> Self {
+        F32x16(unsafe { _mm512_cvtepi32_ps(ints.0) })
+    }
+    #[inline(always)]
+    fn power_of_two(exponent: I32x16) -> Self {
+        F32x16(unsafe {
+            _mm512_castsi512_ps(_mm512_slli_epi32::<23>(_mm512_add_epi32(exponent.0, _mm512_set1_epi32(127))))
+        })
+    }
+    #[inline(always)]
+    fn pick(table: &Table, at: I32x16) -> Self {
+        let entries = table.entries();
+        let last = (entries.len() - 1) as i32;
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last));
+            F32x16(match entries.len() {
+                16 => _mm512_permutexvar_ps(at, _mm512_loadu_ps(entries.as_ptr())),
+                32 => {
+                    let (low, high) = entries.split_at(16);
+                    _mm512_permutex2var_ps(_mm512_loadu_ps(low.as_ptr()), at, _mm512_loadu_ps(high.as_ptr()))
+                }
+                _ => _mm512_i32gather_ps::<4>(at, entries.as_ptr()),
+            })
+        }
+    }
+    #[inline(always)]
+    fn pairs_i16(samples: &[i16], at: I32x16) -> [Self; 2] {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_pair(samples) as i32));
+            // Two neighbours in one read of 32 bits, the first in its lower half.
+            let both = _mm512_i32gather_epi32::<2>(at, samples.as_ptr().cast());
+            let first = _mm512_srai_epi32::<16>(_mm512_slli_epi32::<16>(both));
+            let second = _mm512_srai_epi32::<16>(both);
+            [F32x16(_mm512_cvtepi32_ps(first)), F32x16(_mm512_cvtepi32_ps(second))]
+        }
+    }
+    #[inline(always)]
+    fn pairs_f32(samples: &[f32], at: I32x16) -> [Self; 2] {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_pair(samples) as i32));
+            let next = samples[1..].as_ptr();
+            [F32x16(_mm512_i32gather_ps::<4>(at, samples.as_ptr())), F32x16(_mm512_i32gather_ps::<4>(at, next))]
+        }
+    }
+    #[inline(always)]
+    fn compress(self, mask: Mask16) -> Self {
+        F32x16(unsafe { _mm512_maskz_compress_ps(mask.0, self.0) })
+    }
+}
+
+impl Default for I32x16 {
+    #[inline(always)]
+    fn default() -> Self {
+        I32x16::splat(0)
+    }
+}
+
+impl Add for I32x16 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        I32x16(unsafe { _mm512_add_epi32(self.0, other.0) })
+    }
+}
+
+impl Sub for I32x16 {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        I32x16(unsafe { _mm512_sub_epi32(self.0, other.0) })
+    }
+}
+
+impl Ints for I32x16 {
+    type Mask = Mask16;
+
+    #[inline(always)]
+    fn splat(x: i32) -> Self {
+        I32x16(unsafe { _mm512_set1_epi32(x) })
+    }
+    #[inline(always)]
+    fn count() -> Self {
+        I32x16(unsafe { _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) })
+    }
+    #[inline(always)]
+    fn load(from: &[i32]) -> Self {
+        I32x16(unsafe { _mm512_loadu_si512(from[..16].as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [i32]) {
+        unsafe { _mm512_storeu_si512(to[..16].as_mut_ptr().cast(), self.0) }
+    }
+    #[inline(always)]
+    fn eq(self, other: Self) -> Mask16 {
+        Mask16(unsafe { _mm512_cmpeq_epi32_mask(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask16 {
+        Mask16(unsafe { _mm512_cmplt_epi32_mask(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: Mask16, yes: Self, no: Self) -> Self {
+        I32x16(unsafe { _mm512_mask_blend_epi32(mask.0, no.0, yes.0) })
+    }
+    #[inline(always)]
+    fn compress(self, mask: Mask16) -> Self {
+        I32x16(unsafe { _mm512_maskz_compress_epi32(mask.0, self.0) })
+    }
+}
+
+impl Mask for Mask16 {
+    const ALL: Self = Mask16(u16::MAX);
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        Mask16(self.0 & other.0)
+    }
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        Mask16(self.0 | other.0)
+    }
+    #[inline(always)]
+    fn and_not(self, other: Self) -> Self {
+        Mask16(self.0 & !other.0)
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self.0)
+    }
+}

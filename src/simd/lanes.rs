@@ -1,0 +1,140 @@
+//! What a vector register can do.
+
+use std::ops::{Add, Sub};
+
+use super::Table;
+use crate::math::Number;
+
+/// f32 numbers side by side, each computed for itself.
+pub(crate) trait Lanes: Number {
+    /// How many.
+    const LANES: usize;
+    /// As many integers.
+    type Ints: Ints<Mask = Self::Mask>;
+    /// As many truths.
+    type Mask: Mask;
+
+    /// The first numbers of a slice, which has at least as many.
+    fn load(from: &[f32]) -> Self;
+    /// Overwrites the first numbers of a slice, which has at least as many.
+    fn store(self, to: &mut [f32]);
+    /// `self < other`, false for NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self ≤ other`, false for NaN.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is true, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// The nearest whole number, ties to even.
+    fn round(self) -> Self;
+    /// Towards 0; numbers that fit.
+    fn to_ints(self) -> Self::Ints;
+    /// The nearest number to each integer.
+    fn from_ints(ints: Self::Ints) -> Self;
+    /// 2 to the power of integers from -126 to 127.
+    fn power_of_two(exponent: Self::Ints) -> Self;
+    /// Entries of a table; indices beyond its end give its last entry.
+    fn pick(table: &Table, at: Self::Ints) -> Self;
+    /// The samples at `at` and at `at + 1`, as f32: see [`Pairs`].
+    fn pairs_i16(samples: &[i16], at: Self::Ints) -> [Self; 2];
+    /// The samples at `at` and at `at + 1`: see [`Pairs`].
+    fn pairs_f32(samples: &[f32], at: Self::Ints) -> [Self; 2];
+    /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
+    fn compress(self, mask: Self::Mask) -> Self;
+}
+
+/// i32 numbers side by side.
+pub(crate) trait Ints: Copy + Default + Add<Output = Self> + Sub<Output = Self> + 'static {
+    /// As many truths.
+    type Mask: Mask;
+
+    /// The same number in every lane.
+    fn splat(x: i32) -> Self;
+    /// 0, 1, 2, …
+    fn count() -> Self;
+    /// The first numbers of a slice, which has at least as many.
+    fn load(from: &[i32]) -> Self;
+    /// Overwrites the first numbers of a slice, which has at least as many.
+    fn store(self, to: &mut [i32]);
+    /// `self = other`.
+    fn eq(self, other: Self) -> Self::Mask;
+    /// `self < other`.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is true, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
+    fn compress(self, mask: Self::Mask) -> Self;
+}
+
+/// Truths side by side.
+pub(crate) trait Mask: Copy + 'static {
+    /// All of them.
+    const ALL: Self;
+
+    /// Both.
+    fn and(self, other: Self) -> Self;
+    /// Either.
+    fn or(self, other: Self) -> Self;
+    /// `self`, and not `other`.
+    fn and_not(self, other: Self) -> Self;
+    /// Bit `k` is lane `k`.
+    fn bits(self) -> u32;
+    /// Whether any is true.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+}
+
+/// Samples that are read two neighbours at a time.
+pub(crate) trait Pairs: Sized {
+    /// The samples at `at` and at `at + 1`, as f32. Indices at which no pair begins give another pair of the slice, which has
+    /// at least two samples and at most 2³¹.
+    fn pairs<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 2];
+}
+
+impl Pairs for i16 {
+    #[inline(always)]
+    fn pairs<L: Lanes>(samples: &[i16], at: L::Ints) -> [L; 2] {
+        L::pairs_i16(samples, at)
+    }
+}
+
+impl Pairs for f32 {
+    #[inline(always)]
+    fn pairs<L: Lanes>(samples: &[f32], at: L::Ints) -> [L; 2] {
+        L::pairs_f32(samples, at)
+    }
+}
+
+/// The last index at which a pair of samples begins.
+#[inline(always)]
+pub(super) fn last_pair<T>(samples: &[T]) -> u32 {
+    assert!(samples.len() >= 2, "a pair has two samples");
+    (samples.len() - 2).min(i32::MAX as usize) as u32
+}
+
+/// `1 − e^{−τ}` as [`absorbed_f32`](crate::math::absorbed_f32) has it, operation by operation.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(super) fn absorbed<L: Lanes>(optical_depth: L) -> L {
+    let constant = L::from_f64;
+    let x = -(constant(87.0).min(optical_depth));
+    let k = (x * constant(f64::from(std::f32::consts::LOG2_E))).round();
+    let f = (x - k * constant(f64::from(0.693_359_4_f32))) - k * constant(f64::from(-2.121_944_4e-4_f32));
+    let p = constant(f64::from(1.0_f32 / 5040.0)) * f + constant(f64::from(1.0_f32 / 720.0));
+    let p = p * f + constant(f64::from(1.0_f32 / 120.0));
+    let p = p * f + constant(f64::from(1.0_f32 / 24.0));
+    let p = p * f + constant(f64::from(1.0_f32 / 6.0));
+    let p = p * f + constant(0.5);
+    let expm1 = (p * f) * f + f;
+    let scale = L::power_of_two(k.to_ints());
+    -(scale * expm1 + (scale - L::ONE))
+}
+
+/// `(1 − e^{−τ}) / τ` as [`mean_transmittance_f32`](crate::math::mean_transmittance_f32) has it.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(super) fn mean_transmittance<L: Lanes>(optical_depth: L) -> L {
+    let thin = optical_depth.lt(L::from_f64(f64::from(1e-4_f32)));
+    L::select(thin, L::ONE - L::from_f64(0.5) * optical_depth, absorbed(optical_depth) / optical_depth)
+}

@@ -1,0 +1,95 @@
+//! What all vector registers share: arithmetic, one instruction per operation.
+
+/// Implements [`Number`](crate::math::Number) and its operators for a register of `$lanes` f32, given the intrinsics.
+macro_rules! arithmetic {
+    ($register:ident, $lanes:literal, $raw:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $sqrt:ident, $xor:ident, $and_not:ident, $splat:ident) => {
+        impl Default for $register {
+            #[inline(always)]
+            fn default() -> Self {
+                <$register as Number>::ZERO
+            }
+        }
+
+        arithmetic!(@operator $register, Add, add, $add);
+        arithmetic!(@operator $register, Sub, sub, $sub);
+        arithmetic!(@operator $register, Mul, mul, $mul);
+        arithmetic!(@operator $register, Div, div, $div);
+
+        impl AddAssign for $register {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+
+        impl SubAssign for $register {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+
+        impl Neg for $register {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $xor(self.0, $splat(-0.0)) })
+            }
+        }
+
+        impl Number for $register {
+            // SAFETY: a register is its lanes in order.
+            const ZERO: Self = $register(unsafe { transmute::<[f32; $lanes], $raw>([0.0; $lanes]) });
+            // SAFETY: as above.
+            const ONE: Self = $register(unsafe { transmute::<[f32; $lanes], $raw>([1.0; $lanes]) });
+
+            #[inline(always)]
+            fn from_f64(x: f64) -> Self {
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $splat(x as f32) })
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $and_not($splat(-0.0), self.0) })
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $sqrt(self.0) })
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                // `self` unless `other` is smaller, as for one number.
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $min(other.0, self.0) })
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $max(other.0, self.0) })
+            }
+            #[inline(always)]
+            fn absorbed(self) -> Self {
+                absorbed(self)
+            }
+            #[inline(always)]
+            fn mean_transmittance(self) -> Self {
+                mean_transmittance(self)
+            }
+        }
+    };
+    (@operator $register:ident, $trait:ident, $method:ident, $intrinsic:ident) => {
+        impl $trait for $register {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    };
+}
+
+pub(super) use arithmetic;

@@ -1,0 +1,124 @@
+//! One lane: the twin of every register, on any processor.
+
+use super::lanes::last_pair;
+use super::{Ints, Lanes, Mask, Table};
+
+impl Lanes for f32 {
+    const LANES: usize = 1;
+    type Ints = i32;
+    type Mask = bool;
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        from[0]
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        to[0] = self;
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        self.round_ties_even()
+    }
+    #[inline(always)]
+    fn to_ints(self) -> i32 {
+        self as i32
+    }
+    #[inline(always)]
+    fn from_ints(ints: i32) -> Self {
+        ints as f32
+    }
+    #[inline(always)]
+    fn power_of_two(exponent: i32) -> Self {
+        f32::from_bits(((exponent + 127) as u32) << 23)
+    }
+    #[inline(always)]
+    fn pick(table: &Table, at: i32) -> Self {
+        let entries = table.entries();
+        entries[(at as u32 as usize).min(entries.len() - 1)]
+    }
+    #[inline(always)]
+    fn pairs_i16(samples: &[i16], at: i32) -> [Self; 2] {
+        let at = (at as u32).min(last_pair(samples)) as usize;
+        [f32::from(samples[at]), f32::from(samples[at + 1])]
+    }
+    #[inline(always)]
+    fn pairs_f32(samples: &[f32], at: i32) -> [Self; 2] {
+        let at = (at as u32).min(last_pair(samples)) as usize;
+        [samples[at], samples[at + 1]]
+    }
+    #[inline(always)]
+    fn compress(self, _: bool) -> Self {
+        self
+    }
+}
+
+impl Ints for i32 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(x: i32) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn count() -> Self {
+        0
+    }
+    #[inline(always)]
+    fn load(from: &[i32]) -> Self {
+        from[0]
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [i32]) {
+        to[0] = self;
+    }
+    #[inline(always)]
+    fn eq(self, other: Self) -> bool {
+        self == other
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn compress(self, _: bool) -> Self {
+        self
+    }
+}
+
+impl Mask for bool {
+    const ALL: Self = true;
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        self & other
+    }
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        self | other
+    }
+    #[inline(always)]
+    fn and_not(self, other: Self) -> Self {
+        self & !other
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self)
+    }
+}

@@ -1,0 +1,135 @@
+//! One body over all levels: every lane does what one number does, to the bit.
+
+use super::{Ints, Kernel, Lanes, Level, Mask, Pairs, Table};
+
+/// Numbers of all magnitudes, signs and roundings, the same on each call.
+fn numbers(count: usize, seed: u32) -> Vec<f32> {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        state
+    };
+    let of = |bits: u32, by: i32| (bits as f32 / u32::MAX as f32 - 0.5) * 2f32.powi(by % 20);
+    (0..count).map(|_| of(next(), next() as i32 >> 8)).collect()
+}
+
+/// Everything that lanes compute, as bits, 16 numbers at a time whatever the level.
+struct Everything;
+
+impl Kernel for Everything {
+    type Output = Vec<u32>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Vec<u32> {
+        let (a, b) = (numbers(4096, 1), numbers(4096, 2));
+        let samples: Vec<i16> = numbers(999, 3).iter().map(|x| (x * 100.0) as i16).collect();
+        let tables = [9, 31, 50].map(|n| Table::new(&numbers(n, 4)));
+        let places: Vec<i32> = a.iter().map(|x| (x.abs() * 7.0) as i32).collect();
+        let mut out = vec![Vec::new(); 32];
+        for at in (0..4096).step_by(L::LANES) {
+            let (x, y) = (L::load(&a[at..]), L::load(&b[at..]));
+            let places = L::Ints::load(&places[at..]);
+            let less = x.lt(y);
+            let whole = x.round().to_ints();
+            let found = [
+                x + y,
+                x - y,
+                x * y,
+                x / y,
+                -x,
+                x.min(y),
+                x.max(y),
+                x.abs().sqrt(),
+                x.abs().absorbed(),
+                x.abs().mean_transmittance(),
+                L::select(less, x, y),
+                x.round(),
+                L::from_ints(whole),
+                L::from_ints(x.to_ints()),
+                L::power_of_two(L::Ints::select(less, L::Ints::splat(-126), L::Ints::splat(127))),
+                L::pick(&tables[0], places),
+                L::pick(&tables[1], places),
+                L::pick(&tables[2], places),
+                L::from_ints(places + whole - L::Ints::splat(3)),
+                x.mul_plus(y, x),
+                L::select(x.le(x).and(less), x, y),
+                L::select(less.or(y.lt(L::ZERO)), x, y),
+                L::select(<L::Mask as Mask>::ALL.and_not(less), x, y),
+                L::select(places.eq(L::Ints::splat(7)), x, y),
+                L::select(places.lt(whole), x, y),
+            ];
+            let [first, second] = i16::pairs::<L>(&samples, places);
+            let [third, fourth] = f32::pairs::<L>(&b, places);
+            let mut lanes = vec![0.0; L::LANES];
+            for (k, v) in found.into_iter().chain([first, second, third, fourth]).enumerate() {
+                v.store(&mut lanes);
+                out[k].extend(lanes.iter().map(|v| v.to_bits()));
+            }
+        }
+        out.concat()
+    }
+}
+
+#[test]
+fn every_level_computes_the_same_bits() {
+    let expected = Level::Scalar.run(Everything);
+    for level in Level::ALL.into_iter().filter(|l| l.is_available()) {
+        let found = level.run(Everything);
+        assert_eq!(found.len(), expected.len());
+        for (at, (f, e)) in found.iter().zip(&expected).enumerate() {
+            // The sign and payload of a NaN mean nothing.
+            let (f, e) = (f32::from_bits(*f), f32::from_bits(*e));
+            assert!(
+                f.to_bits() == e.to_bits() || (f.is_nan() && e.is_nan()),
+                "{level}, operation {}: {f:?}, one number gives {e:?}",
+                at / 4096
+            );
+        }
+    }
+}
+
+/// The lanes of a register below a bound, moved to the front.
+struct Below(f32);
+
+impl Kernel for Below {
+    type Output = (Vec<f32>, Vec<i32>);
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let all = numbers(512, 9);
+        let (mut kept, mut from) = (Vec::new(), Vec::new());
+        let (mut lanes, mut ints) = (vec![0.0; L::LANES], vec![0; L::LANES]);
+        for at in (0..512).step_by(L::LANES) {
+            let x = L::load(&all[at..]);
+            let mask = x.lt(L::from_f64(f64::from(self.0)));
+            let count = mask.bits().count_ones() as usize;
+            x.compress(mask).store(&mut lanes);
+            (L::Ints::count() + L::Ints::splat(at as i32)).compress(mask).store(&mut ints);
+            kept.extend(&lanes[..count]);
+            from.extend(&ints[..count]);
+            assert_eq!(mask.any(), count > 0);
+        }
+        (kept, from)
+    }
+}
+
+#[test]
+fn compression_keeps_what_is_chosen_in_order() {
+    for bound in [-1e30, -0.5, 0.0, 3.0, 1e30] {
+        let all = numbers(512, 9);
+        let from: Vec<i32> = (0..512).filter(|&i| all[i as usize] < bound).collect();
+        let kept: Vec<f32> = from.iter().map(|&i| all[i as usize]).collect();
+        for level in Level::ALL {
+            assert_eq!(level.run(Below(bound)), (kept.clone(), from.clone()), "{level}, below {bound}");
+        }
+    }
+}
+
+#[test]
+fn levels_are_known_by_name() {
+    for level in Level::ALL.into_iter().filter(|l| l.is_available()) {
+        assert_eq!(level.to_string().parse(), Ok(level));
+    }
+    assert!("sse".parse::<Level>().unwrap_err().contains("avx2"), "a wrong name lists the right ones");
+    assert!(Level::widest().is_available() && Level::Scalar.is_available());
+}
