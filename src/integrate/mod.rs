@@ -10,6 +10,7 @@ mod empty_space;
 pub mod exact;
 mod light_volumes;
 mod march;
+mod occupancy;
 mod reference;
 mod select;
 mod shade;
@@ -22,6 +23,7 @@ use crate::error::{Error, Fault, Result};
 use crate::image::Image;
 use crate::plan::{Method, SampleRule};
 use crate::scene::{ClassifyAt, Model, Scene};
+use crate::simd::Level;
 use crate::volume::Volume;
 
 /// A picture, and what it took.
@@ -53,11 +55,13 @@ pub struct Schedule {
     pub shuffled_tiles: Option<u64>,
     /// Leap over blocks of cells in which nothing absorbs or emits.
     pub empty_space_skipping: bool,
+    /// The registers that kernels are run with.
+    pub level: Level,
 }
 
 impl Default for Schedule {
     fn default() -> Self {
-        Schedule { shuffled_tiles: None, empty_space_skipping: true }
+        Schedule { shuffled_tiles: None, empty_space_skipping: true, level: Level::widest() }
     }
 }
 

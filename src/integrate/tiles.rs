@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Frame;
 use crate::image::Image;
-use crate::scene::Background;
+use crate::scene::{Background, Ray};
 
 /// Pixels per side of a tile: neighbouring rays read the same voxels.
 const TILE: usize = 16;
@@ -57,12 +57,54 @@ struct Tile<'p> {
     rows: Vec<&'p mut [[f32; 4]]>,
 }
 
+/// Renders all pixels, the rays of a tile at once: `trace` gives the light along each, `None` where it misses the volume.
+pub(super) fn render_whole(
+    frame: &Frame<'_>,
+    trace: impl Fn(&[Ray], &mut [Option<Radiance>]) + Sync,
+) -> (Image, Tally) {
+    let camera = &frame.scene.camera;
+    render_tiles(
+        frame,
+        || (Vec::new(), Vec::new()),
+        |(rays, lights): &mut (Vec<Ray>, Vec<_>), tile, tally| {
+            rays.clear();
+            for (y, row) in tile.rows.iter().enumerate() {
+                rays.extend((0..row.len()).map(|x| camera.pixel_ray(tile.column + x, tile.row + y)));
+            }
+            lights.clear();
+            lights.resize(rays.len(), None);
+            trace(rays, lights);
+            for (out, light) in tile.rows.iter_mut().flat_map(|row| row.iter_mut()).zip(lights) {
+                light.iter().for_each(|l| tally.count(l));
+                *out = over(*light, frame.scene.background);
+            }
+        },
+    )
+}
+
 /// Renders all pixels: `pixel` gives the light along the ray through `(column, row)`, `None` where it misses the volume;
 /// `scratch` makes what a thread keeps between pixels.
 pub(super) fn render<W>(
     frame: &Frame<'_>,
     scratch: impl Fn() -> W + Sync + Send,
     pixel: impl Fn(&mut W, usize, usize) -> Option<Radiance> + Sync,
+) -> (Image, Tally) {
+    render_tiles(frame, scratch, |scratch, tile, tally| {
+        for (y, row) in tile.rows.iter_mut().enumerate() {
+            for (x, out) in row.iter_mut().enumerate() {
+                let light = pixel(scratch, tile.column + x, tile.row + y);
+                light.iter().for_each(|l| tally.count(l));
+                *out = over(light, frame.scene.background);
+            }
+        }
+    })
+}
+
+/// Renders all tiles: `fill` renders one and counts what it took.
+fn render_tiles<W>(
+    frame: &Frame<'_>,
+    scratch: impl Fn() -> W + Sync + Send,
+    fill: impl Fn(&mut W, &mut Tile<'_>, &mut Tally) + Sync,
 ) -> (Image, Tally) {
     let [width, height] = frame.scene.camera.size();
     let mut image = Image::transparent(width, height);
@@ -75,13 +117,7 @@ pub(super) fn render<W>(
         .with_max_len(1)
         .map_init(&scratch, |scratch, tile| {
             let mut tally = Tally::default();
-            for (y, row) in tile.rows.iter_mut().enumerate() {
-                for (x, out) in row.iter_mut().enumerate() {
-                    let light = pixel(scratch, tile.column + x, tile.row + y);
-                    light.iter().for_each(|l| tally.count(l));
-                    *out = over(light, frame.scene.background);
-                }
-            }
+            fill(scratch, tile, &mut tally);
             (frame.progress)(tile.rows.iter().map(|row| row.len()).sum());
             tally
         })

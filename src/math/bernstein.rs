@@ -18,13 +18,22 @@ pub fn lerp<R: Number>(a: R, b: R, t: R) -> R {
 /// Smallest and largest coefficient: an enclosure of the polynomial over `[0, 1]`.
 #[inline(always)]
 pub fn range<R: Number, const N: usize>(b: &[R; N]) -> [R; 2] {
-    b.iter().skip(1).fold([b[0], b[0]], |[low, high], &x| [low.min(x), high.max(x)])
+    let [mut low, mut high] = [b[0], b[0]];
+    for &x in &b[1..] {
+        low = low.min(x);
+        high = high.max(x);
+    }
+    [low, high]
 }
 
 /// Sum of the coefficients, which is the integral over `[0, 1]` times their number.
 #[inline(always)]
 pub fn sum<R: Number, const N: usize>(b: &[R; N]) -> R {
-    b.iter().skip(1).fold(b[0], |s, &x| s + x)
+    let mut sum = b[0];
+    for &x in &b[1..] {
+        sum += x;
+    }
+    sum
 }
 
 /// Value at `u`, by de Casteljau's scheme.
@@ -76,8 +85,12 @@ pub fn trilinear_along<R: Number>(corners: &[R; 8], a: [R; 3], b: [R; 3]) -> Cub
     let (bba, bbb) = (lerp(bb0, bb1, a[2]), lerp(bb0, bb1, b[2]));
     let third = R::from_f64(1.0 / 3.0);
     // As a deviation from one of the three, so that equal values give exactly that value.
-    let mean = |p: R, q: R, r: R| p + third * ((q - p) + (r - p));
-    [aaa, mean(baa, aba, aab), mean(bba, bab, abb), bbb]
+    [aaa, mean(baa, aba, aab, third), mean(bba, bab, abb, third), bbb]
+}
+
+#[inline(always)]
+fn mean<R: Number>(p: R, q: R, r: R, third: R) -> R {
+    p + third * ((q - p) + (r - p))
 }
 
 /// Product of two cubics, of degree six.
@@ -105,12 +118,15 @@ pub fn elevate<R: Number>(a: &Cubic<R>) -> [R; 7] {
 #[inline(always)]
 pub fn times_linear<R: Number, const N: usize, const M: usize>(b: &[R; N], low: R, high: R) -> [R; M] {
     const { assert!(M == N + 1, "the product has one more coefficient") };
-    each(|k| {
-        let t = R::from_f64(k as f64 / N as f64);
-        let from_high = if k > 0 { t * high * b[k - 1] } else { R::ZERO };
-        let from_low = if k < N { (R::ONE - t) * low * b[k] } else { R::ZERO };
-        from_low + from_high
-    })
+    each(
+        #[inline(always)]
+        |k| {
+            let t = R::from_f64(k as f64 / N as f64);
+            let from_high = if k > 0 { t * high * b[k - 1] } else { R::ZERO };
+            let from_low = if k < N { (R::ONE - t) * low * b[k] } else { R::ZERO };
+            from_low + from_high
+        },
+    )
 }
 
 /// Where in the open interval `(0, 1)` the derivative of a cubic vanishes, ascending, and how many of the two count.

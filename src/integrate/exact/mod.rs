@@ -22,16 +22,18 @@ mod ray;
 mod shade;
 mod shown;
 mod splits;
+mod stream;
 mod toward_light;
 mod values;
 mod voxels;
 
-use crate::classify::{Baked, BakedAlike, OneD, TwoD, bake, bake_alike};
+use crate::classify::{Baked, BakedAlike, Classifier, OneD, TwoD, bake, bake_alike};
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::plan::Exact;
 use crate::scene::{ClassifyAt, Model, Ray, Scene, Shading};
+use crate::simd::{Level, Pairs};
 use crate::volume::{Samples, Volume};
 
 use super::classify_voxels::classify_voxels;
@@ -49,6 +51,7 @@ use ray::{Brightest, Frame};
 use shade::{Lit, Unlit};
 use shown::Shown;
 use splits::Splits;
+use stream::{Fields, Function, OfValue, OfValueAndMagnitude, Read, Stream, Voxels};
 
 pub use ray::Traced;
 pub(super) use toward_light::{TowardLight, toward_light};
@@ -65,20 +68,19 @@ pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rende
             .found(tolerance.to_string())
             .expected("a finite number above 0, such as 1/255"));
     }
-    let tracer = tracer(frame.volume, frame.scene, tolerance, Precision::Single);
-    let (image, tally) = tiles::render(
-        frame,
-        || (),
-        |(), column, row| {
-            let traced = tracer.trace(&frame.scene.camera.pixel_ray(column, row))?;
-            Some(Radiance {
+    let tracer = tracer_at(frame.schedule.level, frame.volume, frame.scene, tolerance, Precision::Single);
+    let (image, tally) = tiles::render_whole(frame, |rays, lights| {
+        let mut traced = vec![None; rays.len()];
+        tracer.trace_all(rays, &mut traced);
+        for (light, traced) in lights.iter_mut().zip(traced) {
+            *light = traced.map(|traced| Radiance {
                 color: traced.radiance,
                 transmittance: traced.transmittance,
                 samples: traced.pieces,
                 error_bound: traced.bound,
-            })
-        },
-    );
+            });
+        }
+    });
     let statistics = Statistics {
         samples: tally.samples,
         error_bound: Some(tally.error_bound),
@@ -101,6 +103,13 @@ pub enum Precision {
 pub trait Tracer: Sync {
     /// The light of a ray, with its bound; `None` if it misses the volume.
     fn trace(&self, ray: &Ray) -> Option<Traced>;
+    /// The light of several rays, each as if it were traced alone; `traced` is as long as `rays`.
+    fn trace_all(&self, rays: &[Ray], traced: &mut [Option<Traced>]) {
+        for (ray, traced) in rays.iter().zip(traced) {
+            *traced = self.trace(ray);
+        }
+    }
+
     /// What runs, such as `exact/i16/tf2d/lit/f32`.
     fn kernel(&self) -> &str;
 }
@@ -108,9 +117,20 @@ pub trait Tracer: Sync {
 /// The exact integrator for a scene, within `tolerance` of a channel of a pixel. An RGBA volume shows its light, whatever
 /// else the scene asks for; [`render`](super::render) refuses what an RGBA volume cannot show.
 pub fn tracer<'a>(volume: &'a Volume, scene: &'a Scene, tolerance: f64, precision: Precision) -> Box<dyn Tracer + 'a> {
+    tracer_at(Level::widest(), volume, scene, tolerance, precision)
+}
+
+/// The same with the registers of a level, for scenes that have a kernel for them.
+pub fn tracer_at<'a>(
+    level: Level,
+    volume: &'a Volume,
+    scene: &'a Scene,
+    tolerance: f64,
+    precision: Precision,
+) -> Box<dyn Tracer + 'a> {
     match volume.samples() {
-        Samples::I16(samples) => for_samples(volume, scene, samples, tolerance, precision),
-        Samples::F32(samples) => for_samples(volume, scene, samples, tolerance, precision),
+        Samples::I16(samples) => for_samples(level, volume, scene, samples, tolerance, precision),
+        Samples::F32(samples) => for_samples(level, volume, scene, samples, tolerance, precision),
         Samples::Rgba8(texels) => for_colors(volume, scene, texels, tolerance),
         Samples::Rgba16(texels) => for_colors(volume, scene, texels, tolerance),
     }
@@ -127,7 +147,8 @@ fn for_colors<'a, T: Component>(
     voxels::tracer(volume, scene, Rgba::new(texels, encoding), tolerance, name)
 }
 
-fn for_samples<'a, V: Voxel>(
+fn for_samples<'a, V: Voxel + Pairs>(
+    level: Level,
     volume: &'a Volume,
     scene: &'a Scene,
     samples: &'a [V],
@@ -155,7 +176,7 @@ fn for_samples<'a, V: Voxel>(
         Model::Light | Model::Value(_) => {}
     }
     let tf = &scene.transfer_function;
-    let of = Of { volume, scene, tolerance, voxel: V::NAME };
+    let of = Of { volume, scene, tolerance, voxel: V::NAME, level };
     if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
         let nearest = Nearest::new(classes, volume.grid());
         // In f64 alone, which keeps the number of kernels small.
@@ -174,6 +195,18 @@ fn for_samples<'a, V: Voxel>(
     // Across an interval this narrow, the rounding of a value in f32 would cost more than rounding may.
     let too_narrow = double.narrowest() < SHARE_OF_ROUNDING * f64::from(f32::EPSILON) / tolerance;
     let single = precision == Precision::Single && !too_narrow;
+    if single && let Some(voxels) = of.voxels(samples) {
+        return match (double, bake::<f32>(tf, rescale)) {
+            (Baked::OneD(double), Baked::OneD(other)) => {
+                of.stream("tf1d", voxels, OfValue::new(&other), &other, Classified { lattice, classifier: double })
+            }
+            (Baked::TwoD(double), Baked::TwoD(other)) => {
+                let function = OfValueAndMagnitude::new(&other);
+                of.stream("tf2d", voxels, function, &other, Classified { lattice, classifier: double })
+            }
+            _ => unreachable!("both precisions bake the same transfer function"),
+        };
+    }
     match (double, bake::<f32>(tf, rescale)) {
         (Baked::OneD(double), Baked::OneD(other)) => {
             let other = single.then_some(Classified { lattice, classifier: other });
@@ -193,9 +226,42 @@ struct Of<'a> {
     scene: &'a Scene,
     tolerance: f64,
     voxel: &'static str,
+    level: Level,
 }
 
 impl<'a> Of<'a> {
+    /// The voxels as the fast kernel reads them, where it renders the scene.
+    fn voxels<V: Voxel + Pairs>(&self, samples: &'a [V]) -> Option<Voxels<'a, V>> {
+        let Of { volume, scene, .. } = *self;
+        let plain = scene.model == Model::Light && !scene.effects.change_light() && scene.shading.is_none();
+        plain.then(|| Voxels::new(volume, samples)).flatten()
+    }
+
+    /// The fast kernel.
+    fn stream<V, T, C, D, const F: usize>(
+        self,
+        name: &str,
+        voxels: Voxels<'a, V>,
+        function: T,
+        classifier: &C,
+        double: D,
+    ) -> Box<dyn Tracer + 'a>
+    where
+        V: Voxel + Pairs,
+        T: Function<F> + 'a,
+        C: Classifier<f32>,
+        D: Medium<f64> + 'a,
+        Read: Fields<F>,
+    {
+        let Of { volume, scene, tolerance, voxel, level } = self;
+        let everything = [0.0, f32::MAX];
+        let occupancy = voxels.occupancy(|range| !classifier.is_empty(range, everything));
+        let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest: Brightest::of(scene) };
+        let (grid, clip) = (volume.grid(), &scene.effects.clip);
+        let name = format!("exact/{voxel}/{name}/unlit/{level}");
+        Box::new(Stream { level, frame, grid, clip, voxels, occupancy, function, double, name })
+    }
+
     /// The kernel for a medium: by its effects of light, its shading, or the optical depth alone. `single` is the same medium
     /// in f32, where that is enough; effects and numbers are computed in f64 alone.
     fn tracer<D: Extinction + 'a, S: Medium<f32> + 'a>(
@@ -204,7 +270,7 @@ impl<'a> Of<'a> {
         double: D,
         single: Option<S>,
     ) -> Box<dyn Tracer + 'a> {
-        let Of { volume, scene, tolerance, voxel } = self;
+        let Of { volume, scene, tolerance, voxel, .. } = self;
         let domain = Domain::new(volume, scene);
         let name = |what: &str, real: &str| format!("exact/{voxel}/{classifier}/{what}/{real}");
         if let Model::Value(model) = &scene.model {

@@ -21,7 +21,7 @@
 //! the integral is `m (Q + G_mid) ± m G_rad`.
 
 use crate::math::bernstein::{sum, times_linear};
-use crate::math::{Real, each};
+use crate::math::{Number, each};
 
 /// Emission and extinction along a piece: polynomials in Bernstein form with `N` coefficients, 1/mm.
 #[derive(Debug, Clone, Copy)]
@@ -54,7 +54,7 @@ pub(super) struct LinearFactors<R> {
     pub(super) highlight_error: R,
 }
 
-impl<R: Real, const N: usize> Optics<R, N> {
+impl<R: Number, const N: usize> Optics<R, N> {
     /// The integral over a piece of this length.
     #[inline(always)]
     pub(super) fn integrate(&self, length_mm: R) -> Integral<R> {
@@ -65,21 +65,25 @@ impl<R: Real, const N: usize> Optics<R, N> {
         let m = depth.mean_transmittance();
         let scale = length_mm * length_mm / n;
         let mut error = R::ZERO;
-        let radiance = each(|c| {
-            let q = &self.emission[c];
-            let mean = sum(q) / n;
-            // G at the coefficients between its ends, where it is 0.
-            let (mut low, mut high, mut g) = (R::ZERO, R::ZERO, R::ZERO);
-            for (&q, &s) in q.iter().zip(&self.extinction).take(N - 1) {
-                g += sigma * q - mean * s;
-                low = low.min(g);
-                high = high.max(g);
-            }
-            let half = R::from_f64(0.5) * scale;
-            error = error.max(half * (high - low));
-            length_mm * mean + half * (high + low)
-        });
-        Integral { absorbed: depth.absorbed(), radiance: radiance.map(|x| m * x), error: m * error }
+        let radiance = each(
+            #[inline(always)]
+            |c| {
+                let q = &self.emission[c];
+                let mean = sum(q) / n;
+                // G at the coefficients between its ends, where it is 0.
+                let (mut low, mut high, mut g) = (R::ZERO, R::ZERO, R::ZERO);
+                for (&q, &s) in q.iter().zip(&self.extinction).take(N - 1) {
+                    g += sigma * q - mean * s;
+                    low = low.min(g);
+                    high = high.max(g);
+                }
+                let half = R::from_f64(0.5) * scale;
+                error = error.max(half * (high - low));
+                length_mm * mean + half * (high + low)
+            },
+        );
+        let [r, g, b]: [R; 3] = radiance;
+        Integral { absorbed: depth.absorbed(), radiance: [m * r, m * g, m * b], error: m * error }
     }
 
     /// Emission with shading between `factors`' linear functions; `M` must be `N + 1`.
@@ -87,11 +91,17 @@ impl<R: Real, const N: usize> Optics<R, N> {
     pub(super) fn shaded<const M: usize>(&self, factors: &LinearFactors<R>) -> Optics<R, M> {
         let [front, back] = &factors.reflected;
         let [shine_front, shine_back] = &factors.highlight;
-        let emission = each(|c| {
-            let reflected: [R; M] = times_linear(&self.emission[c], front[c], back[c]);
-            let highlight: [R; M] = times_linear(&self.extinction, shine_front[c], shine_back[c]);
-            each(|k| reflected[k] + highlight[k])
-        });
+        let emission = each(
+            #[inline(always)]
+            |c| {
+                let reflected: [R; M] = times_linear(&self.emission[c], front[c], back[c]);
+                let highlight: [R; M] = times_linear(&self.extinction, shine_front[c], shine_back[c]);
+                each(
+                    #[inline(always)]
+                    |k| reflected[k] + highlight[k],
+                )
+            },
+        );
         Optics { emission, extinction: times_linear(&self.extinction, R::ONE, R::ONE) }
     }
 

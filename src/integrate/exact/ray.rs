@@ -5,7 +5,7 @@ use crate::scene::{Ray, Scene};
 use crate::transfer::{Optics, Side, TransferFunction};
 
 use super::budget::Budget;
-use super::cells::Domain;
+use super::cells::{Domain, Segment};
 use super::medium::Medium;
 use super::shade::Shader;
 use super::splits::Splits;
@@ -131,7 +131,7 @@ impl Frame<'_> {
         shader: &S,
         splits: &mut Splits<R>,
     ) -> Option<Traced> {
-        let mut light = Front::new(Budget::new(self.tolerance));
+        let mut light = Front::new(self.tolerance);
         let space = |length_mm: f64| shader.space(R::from_f64(length_mm));
         let Some(inside) = self.domain.inside(ray) else {
             light.cross(space(shader.space_end_mm()?));
@@ -144,23 +144,15 @@ impl Frame<'_> {
                 light.cross(space(segment.length_mm));
                 continue;
             };
-            let shading = shader.cell(&segment, || medium.gradient(&fields, &segment));
-            let harm = self.brightest.per_mm.max(self.brightest.extinction_per_mm) * segment.length_mm;
-            splits.restart(R::from_f64(harm / (OF_A_CUT * self.tolerance)));
-            medium.cut(&fields, splits);
-            shader.cut(&shading, splits);
-            splits.sorted();
-            let front_mm = segment.exit_mm - segment.length_mm;
-            for i in 1..splits.len() {
-                let ends = [splits.get(i - 1), splits.get(i)];
-                light.pass(ends, |part| {
-                    let length_mm = R::from_f64(segment.length_mm) * (part[1] - part[0]);
-                    let integral = medium.integrate(&fields, part, length_mm, shader, &shading);
-                    let integral = integral.or_else(|| shader.space(length_mm))?;
-                    let at_mm = front_mm + part[1].to_f64() * segment.length_mm;
-                    Some((integral, (at_mm - inside.enter_mm()) / inside.length_mm()))
-                });
-            }
+            self.pass_fields(
+                &segment,
+                &fields,
+                |mm| (mm - inside.enter_mm()) / inside.length_mm(),
+                medium,
+                shader,
+                splits,
+                &mut light,
+            );
             let rest = self.brightest.of_rest(light.transmittance, end_mm - segment.exit_mm);
             if light.budget.may_end(rest) {
                 return Some(light.ended(rest));
@@ -169,10 +161,66 @@ impl Frame<'_> {
         light.cross(space(end_mm - inside.exit_mm()));
         Some(light.ended(0.0))
     }
+
+    /// Passes a segment; `fraction` gives the part of the ray in front of a distance from its origin, mm.
+    pub(super) fn pass<R: Real, M: Medium<R>, S: Shader<R>>(
+        &self,
+        segment: &Segment,
+        fraction: impl Fn(f64) -> f64,
+        medium: &M,
+        shader: &S,
+        splits: &mut Splits<R>,
+        light: &mut Front,
+    ) {
+        if let Some(fields) = medium.fields(segment) {
+            self.pass_fields(segment, &fields, fraction, medium, shader, splits, light);
+        }
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "a segment, what is on it, and who integrates it")]
+    #[inline(always)]
+    fn pass_fields<R: Real, M: Medium<R>, S: Shader<R>>(
+        &self,
+        segment: &Segment,
+        fields: &M::Fields,
+        fraction: impl Fn(f64) -> f64,
+        medium: &M,
+        shader: &S,
+        splits: &mut Splits<R>,
+        light: &mut Front,
+    ) {
+        let shading = shader.cell(segment, || medium.gradient(fields, segment));
+        splits.restart(R::from_f64(self.harm_per_mm() * segment.length_mm));
+        medium.cut(fields, splits);
+        shader.cut(&shading, splits);
+        splits.sorted();
+        let front_mm = segment.exit_mm - segment.length_mm;
+        for i in 1..splits.len() {
+            let ends = [splits.get(i - 1), splits.get(i)];
+            light.pass(ends, |part| {
+                let length_mm = R::from_f64(segment.length_mm) * (part[1] - part[0]);
+                let integral = medium.integrate(fields, part, length_mm, shader, &shading);
+                let integral = integral.or_else(|| shader.space(length_mm))?;
+                Some((integral, fraction(front_mm + part[1].to_f64() * segment.length_mm)))
+            });
+        }
+    }
+
+    /// What one mm of a misplaced cut may cost, over what it may.
+    pub(super) fn harm_per_mm(&self) -> f64 {
+        self.brightest.per_mm.max(self.brightest.extinction_per_mm) / (OF_A_CUT * self.tolerance)
+    }
+
+    /// Bound on the error of a channel if a ray is cut short at a transmittance, `rest_mm` before its end.
+    #[inline(always)]
+    pub(super) fn of_rest(&self, transmittance: f64, rest_mm: f64) -> f64 {
+        self.brightest.of_rest(transmittance, rest_mm)
+    }
 }
 
 /// Light and error gathered so far, front to back.
-struct Front {
+#[derive(Debug)]
+pub(super) struct Front {
     radiance: [f64; 3],
     transmittance: f64,
     opacity: f64,
@@ -182,8 +230,40 @@ struct Front {
 
 impl Front {
     #[inline(always)]
-    fn new(budget: Budget) -> Self {
-        Front { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, budget, pieces: 0 }
+    pub(super) fn new(tolerance: f64) -> Self {
+        Front { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, budget: Budget::new(tolerance), pieces: 0 }
+    }
+
+    /// What is left of light from behind.
+    #[inline(always)]
+    pub(super) fn transmittance(&self) -> f64 {
+        self.transmittance
+    }
+
+    /// Whether the ray may end with an error of at most `rest`.
+    #[inline(always)]
+    pub(super) fn may_end(&self, rest: f64) -> bool {
+        self.budget.may_end(rest)
+    }
+
+    /// Passes a stretch that ends at a fraction of the ray and took some pieces, if the budget allows its error.
+    #[inline(always)]
+    pub(super) fn take(&mut self, radiance: [f32; 3], absorbed: f32, error: f32, fraction: f64, pieces: u64) -> bool {
+        let t = self.transmittance;
+        let next = t - t * f64::from(absorbed);
+        let error = t * f64::from(error);
+        // A NaN is refused, too.
+        if !(error <= self.budget.left(next, fraction)) {
+            return false;
+        }
+        for (sum, x) in self.radiance.iter_mut().zip(radiance) {
+            *sum += t * f64::from(x);
+        }
+        self.opacity += t * f64::from(absorbed);
+        self.transmittance = next;
+        self.budget.spend(error);
+        self.pieces += pieces;
+        true
     }
 
     /// Passes a stretch whose integral has a closed form.
@@ -235,7 +315,7 @@ impl Front {
         }
     }
 
-    fn ended(self, rest: f64) -> Traced {
+    pub(super) fn ended(&self, rest: f64) -> Traced {
         Traced {
             radiance: self.radiance,
             transmittance: self.transmittance,

@@ -1,0 +1,110 @@
+//! The knots of a transfer function along one axis, for lanes.
+
+use crate::classify;
+use crate::simd::{Ints, Lanes, Table};
+
+/// Beyond all numbers that samples or gradients have, and small enough not to overflow when subtracted.
+const FAR: f32 = 1e37;
+
+/// More knots than this are looked up by bisection.
+const FEW: usize = 16;
+
+/// The `n + 1` knots of an axis cut the line into `n + 2` intervals: number 0 lies below the first knot, number `n + 1` from the
+/// last one on.
+#[derive(Debug, Clone)]
+pub(super) struct Axis {
+    knots: Vec<f32>,
+    /// Lower ends of the intervals; that of the first is far below.
+    ends: Table,
+    /// Where each interval's function is anchored: its lower knot, or the first knot.
+    anchors: Table,
+    /// 1 where the function jumps, or all but jumps, at an interval's lower end.
+    steep: Option<Table>,
+}
+
+impl Axis {
+    pub(super) fn new(axis: &classify::Axis<f32>) -> Self {
+        let knots = axis.knots().to_vec();
+        let ends: Vec<f32> = [&[-FAR], knots.as_slice(), &[FAR]].concat();
+        let anchors: Vec<f32> = [&knots[..1], knots.as_slice()].concat();
+        let is_steep = |end: usize| 0 < end && end <= knots.len() && axis.is_steep(end - 1);
+        let steep: Vec<f32> = (0..ends.len()).map(|end| f32::from(u8::from(is_steep(end)))).collect();
+        Axis {
+            ends: Table::new(&ends),
+            anchors: Table::new(&anchors),
+            steep: steep.contains(&1.0).then(|| Table::new(&steep)),
+            knots,
+        }
+    }
+
+    /// Number of intervals, those beyond the ends included.
+    pub(super) fn intervals(&self) -> usize {
+        self.knots.len() + 1
+    }
+
+    /// The interval of each number; a knot belongs to the interval above it.
+    #[inline(always)]
+    pub(super) fn interval<L: Lanes>(&self, x: L) -> L::Ints {
+        self.count(
+            #[inline(always)]
+            |knot: L| knot.le(x),
+        )
+    }
+
+    /// The interval of each number; a knot belongs to the interval below it.
+    #[inline(always)]
+    pub(super) fn interval_below<L: Lanes>(&self, x: L) -> L::Ints {
+        self.count(
+            #[inline(always)]
+            |knot: L| knot.lt(x),
+        )
+    }
+
+    /// How many knots lie below, where those that do come first.
+    #[inline(always)]
+    fn count<L: Lanes>(&self, is_below: impl Fn(L) -> L::Mask) -> L::Ints {
+        let (none, one) = (L::Ints::splat(0), L::Ints::splat(1));
+        if self.knots.len() <= FEW {
+            let mut count = none;
+            for &knot in &self.knots {
+                count = count + L::Ints::select(is_below(L::from_f64(f64::from(knot))), one, none);
+            }
+            return count;
+        }
+        // Bisection among the ends, of which the first is always below and those after the last never are.
+        let mut count = none;
+        let mut width = (self.knots.len() + 1).next_power_of_two() / 2;
+        while width > 0 {
+            let tried = count + L::Ints::splat(width as i32);
+            count = L::Ints::select(is_below(L::pick(&self.ends, tried)), tried, count);
+            width /= 2;
+        }
+        count
+    }
+
+    /// The lower end of each interval; asked for one more, the upper end.
+    #[inline(always)]
+    pub(super) fn end<L: Lanes>(&self, interval: L::Ints) -> L {
+        L::pick(&self.ends, interval)
+    }
+
+    /// Where each interval's function is anchored.
+    #[inline(always)]
+    pub(super) fn anchor<L: Lanes>(&self, interval: L::Ints) -> L {
+        L::pick(&self.anchors, interval)
+    }
+
+    /// Which ends are steep; `None` if there are none.
+    #[inline(always)]
+    pub(super) fn steep(&self) -> Option<&Table> {
+        self.steep.as_ref()
+    }
+
+    /// Bytes in memory.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.knots.as_slice())
+            + self.ends.bytes()
+            + self.anchors.bytes()
+            + self.steep.as_ref().map_or(0, Table::bytes)
+    }
+}

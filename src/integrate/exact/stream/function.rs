@@ -1,0 +1,236 @@
+//! Transfer functions for lanes: polynomials of the fields along a piece, and where there is nothing.
+
+use super::axis::Axis;
+use crate::classify::{OneD, TwoD};
+use crate::integrate::exact::piece::{Integral, Optics};
+use crate::math::bernstein::{Cubic, elevate, product};
+use crate::math::each;
+use crate::simd::{Ints, Lanes, Table};
+
+/// Components of emission and extinction.
+const COMPONENTS: usize = 4;
+
+/// A transfer function of `F` fields: the value, and the gradient magnitude where `F` is 2.
+pub(in crate::integrate::exact) trait Function<const F: usize>: Sync {
+    /// The axis of a field.
+    fn axis(&self, field: usize) -> &Axis;
+
+    /// In which lanes nothing absorbs or emits for all fields in intervals from `first` to `last`.
+    fn is_empty<L: Lanes>(&self, first: [L::Ints; F], last: [L::Ints; F]) -> L::Mask;
+
+    /// The integral over a piece on which each field stays in one interval.
+    fn integrate<L: Lanes>(&self, interval: [L::Ints; F], fields: &[Cubic<L>; F], length_mm: L) -> Integral<L>;
+
+    /// Bytes in memory.
+    fn bytes(&self) -> usize;
+}
+
+/// A function of the value alone.
+#[derive(Debug, Clone)]
+pub(in crate::integrate::exact) struct OfValue {
+    axis: Axis,
+    low: [Table; COMPONENTS],
+    slope: [Table; COMPONENTS],
+    /// Lit intervals below each.
+    lit_before: Table,
+}
+
+impl OfValue {
+    pub(in crate::integrate::exact) fn new(function: &OneD<f32>) -> Self {
+        let axis = Axis::new(function.axis());
+        let knots = function.axis().knots();
+        let last = knots.len() - 2;
+        // Beyond the ends the function is constant.
+        let pieces: Vec<[[f32; 2]; COMPONENTS]> = (0..axis.intervals())
+            .map(|i| {
+                let piece = function.piece(i.saturating_sub(1).min(last));
+                each(
+                    #[inline(always)]
+                    |c| match i {
+                        0 => [piece.low[c], 0.0],
+                        i if i > last + 1 => [piece.low[c] + piece.slope[c] * (knots[last + 1] - knots[last]), 0.0],
+                        _ => [piece.low[c], piece.slope[c]],
+                    },
+                )
+            })
+            .collect();
+        let table = |c: usize, k: usize| Table::new(&pieces.iter().map(|p| p[c][k]).collect::<Vec<f32>>());
+        let mut lit_before = vec![0.0];
+        for piece in &pieces {
+            let lit = piece.iter().flatten().any(|&x| x != 0.0);
+            lit_before.push(lit_before[lit_before.len() - 1] + f32::from(u8::from(lit)));
+        }
+        OfValue {
+            axis,
+            low: std::array::from_fn(|c| table(c, 0)),
+            slope: std::array::from_fn(|c| table(c, 1)),
+            lit_before: Table::new(&lit_before),
+        }
+    }
+}
+
+impl Function<1> for OfValue {
+    fn axis(&self, _: usize) -> &Axis {
+        &self.axis
+    }
+
+    #[inline(always)]
+    fn is_empty<L: Lanes>(&self, [first]: [L::Ints; 1], [last]: [L::Ints; 1]) -> L::Mask {
+        let before = L::pick(&self.lit_before, first);
+        L::pick(&self.lit_before, last + L::Ints::splat(1)).le(before)
+    }
+
+    #[inline(always)]
+    fn integrate<L: Lanes>(&self, [i]: [L::Ints; 1], [value]: &[Cubic<L>; 1], length_mm: L) -> Integral<L> {
+        let anchor = self.axis.anchor::<L>(i);
+        let dv: Cubic<L> = each(
+            #[inline(always)]
+            |k| value[k] - anchor,
+        );
+        let [r, g, b, extinction]: [Cubic<L>; 4] = each(
+            #[inline(always)]
+            |c| {
+                let (low, slope) = (L::pick(&self.low[c], i), L::pick(&self.slope[c], i));
+                each(
+                    #[inline(always)]
+                    |k| slope.mul_plus(dv[k], low),
+                )
+            },
+        );
+        Optics { emission: [r, g, b], extinction }.integrate(length_mm)
+    }
+
+    fn bytes(&self) -> usize {
+        self.axis.bytes()
+            + self.low.iter().chain(&self.slope).map(Table::bytes).sum::<usize>()
+            + self.lit_before.bytes()
+    }
+}
+
+/// A function of value and gradient magnitude.
+#[derive(Debug, Clone)]
+pub(in crate::integrate::exact) struct OfValueAndMagnitude {
+    values: Axis,
+    magnitudes: Axis,
+    /// Per component: at the lower corner, by value, by magnitude, by both.
+    patches: [[Table; 4]; COMPONENTS],
+    /// Summed-area table of lit patches.
+    lit_below: Table,
+}
+
+impl OfValueAndMagnitude {
+    pub(in crate::integrate::exact) fn new(function: &TwoD<f32>) -> Self {
+        let (values, magnitudes) = (Axis::new(function.values()), Axis::new(function.gradients()));
+        let (nv, ng) = (values.intervals(), magnitudes.intervals());
+        // Beyond the ends of an axis the function is constant along it: how far from the inner patch's lower end it is read.
+        let outside = |axis: &crate::classify::Axis<f32>, i: usize| {
+            let knots = axis.knots();
+            let last = knots.len() - 2;
+            match i {
+                0 => (0, Some(0.0)),
+                i if i > last + 1 => (last, Some(knots[last + 1] - knots[last])),
+                _ => (i - 1, None),
+            }
+        };
+        let mut patches = Vec::with_capacity(nv * ng);
+        for j in 0..ng {
+            let (g, g_outside) = outside(function.gradients(), j);
+            for i in 0..nv {
+                let (v, v_outside) = outside(function.values(), i);
+                let patch = function.patch(v, g);
+                let component = |c: usize| {
+                    let mut terms = [patch.low[c], patch.by_value[c], patch.by_gradient[c], patch.by_both[c]];
+                    if let Some(dv) = v_outside {
+                        terms = [terms[0] + dv * terms[1], 0.0, terms[2] + dv * terms[3], 0.0];
+                    }
+                    if let Some(dg) = g_outside {
+                        terms = [terms[0] + dg * terms[2], terms[1] + dg * terms[3], 0.0, 0.0];
+                    }
+                    terms
+                };
+                patches.push([component(0), component(1), component(2), component(3)]);
+            }
+        }
+        let mut lit_below = vec![0.0f32; (nv + 1) * (ng + 1)];
+        let at = |i: usize, j: usize| i + j * (nv + 1);
+        for j in 0..ng {
+            for i in 0..nv {
+                let lit = patches[i + j * nv].iter().flatten().any(|&x: &f32| x != 0.0);
+                lit_below[at(i + 1, j + 1)] =
+                    lit_below[at(i, j + 1)] + lit_below[at(i + 1, j)] - lit_below[at(i, j)] + f32::from(u8::from(lit));
+            }
+        }
+        let table = |c: usize, term: usize| Table::new(&patches.iter().map(|p| p[c][term]).collect::<Vec<f32>>());
+        OfValueAndMagnitude {
+            values,
+            magnitudes,
+            patches: std::array::from_fn(|c| std::array::from_fn(|term| table(c, term))),
+            lit_below: Table::new(&lit_below),
+        }
+    }
+}
+
+/// `i + j · width` in lanes, where `j` is small.
+#[inline(always)]
+fn at<L: Lanes>(i: L::Ints, j: L::Ints, width: usize) -> L::Ints {
+    // Exact as f32 numbers: tables have far fewer than 2^24 entries.
+    (L::from_ints(j) * L::from_f64(width as f64) + L::from_ints(i)).to_ints()
+}
+
+impl Function<2> for OfValueAndMagnitude {
+    fn axis(&self, field: usize) -> &Axis {
+        if field == 0 { &self.values } else { &self.magnitudes }
+    }
+
+    #[inline(always)]
+    fn is_empty<L: Lanes>(&self, [v0, g0]: [L::Ints; 2], [v1, g1]: [L::Ints; 2]) -> L::Mask {
+        let one = L::Ints::splat(1);
+        let (v1, g1) = (v1 + one, g1 + one);
+        let [all, none, left, below]: [L; 4] = each(
+            #[inline(always)]
+            |n| {
+                let (v, g) = [(v1, g1), (v0, g0), (v0, g1), (v1, g0)][n];
+                L::pick(&self.lit_below, at::<L>(v, g, self.values.intervals() + 1))
+            },
+        );
+        (all + none).le(left + below)
+    }
+
+    #[inline(always)]
+    fn integrate<L: Lanes>(
+        &self,
+        [i, j]: [L::Ints; 2],
+        [value, magnitude]: &[Cubic<L>; 2],
+        length_mm: L,
+    ) -> Integral<L> {
+        let (v_anchor, g_anchor) = (self.values.anchor::<L>(i), self.magnitudes.anchor::<L>(j));
+        let dv: Cubic<L> = each(
+            #[inline(always)]
+            |k| value[k] - v_anchor,
+        );
+        let dg: Cubic<L> = each(
+            #[inline(always)]
+            |k| magnitude[k] - g_anchor,
+        );
+        let (v, m, vg) = (elevate(&dv), elevate(&dg), product(&dv, &dg));
+        let patch = at::<L>(i, j, self.values.intervals());
+        let [r, g, b, extinction]: [[L; 7]; 4] = each(
+            #[inline(always)]
+            |c| {
+                let [low, by_value, by_magnitude, by_both] = &self.patches[c];
+                let (low, by_value) = (L::pick(low, patch), L::pick(by_value, patch));
+                let (by_magnitude, by_both) = (L::pick(by_magnitude, patch), L::pick(by_both, patch));
+                each(
+                    #[inline(always)]
+                    |k| by_both.mul_plus(vg[k], by_magnitude.mul_plus(m[k], by_value.mul_plus(v[k], low))),
+                )
+            },
+        );
+        Optics { emission: [r, g, b], extinction }.integrate(length_mm)
+    }
+
+    fn bytes(&self) -> usize {
+        let tables = self.patches.iter().flatten().map(Table::bytes).sum::<usize>();
+        self.values.bytes() + self.magnitudes.bytes() + tables + self.lit_below.bytes()
+    }
+}

@@ -1,0 +1,271 @@
+//! From cubics to light: cuts cells at the knots, and integrates.
+
+use super::axis::Axis;
+use super::function::Function;
+use super::look::ROUNDINGS;
+use super::queue::{Results, Shown};
+use crate::integrate::exact::piece::Integral;
+use crate::math::bernstein::{Cubic, lerp, range, restrict, slope, value};
+use crate::math::each;
+use crate::simd::{Ints, Lanes, Mask, Table};
+
+/// Iterations after which a crossing is not sought any further; bisection alone would be done by then.
+const MOST_ITERATIONS: usize = 40;
+
+/// Integrates cells whose fields stay in their intervals.
+#[inline(always)]
+pub(super) fn whole<L: Lanes, const F: usize>(shown: &Shown<F>, function: &impl Function<F>, results: &mut Results) {
+    for first in (0..shown.count).step_by(L::LANES) {
+        let fields = load_fields::<L, F>(shown, first);
+        let mut interval = [L::Ints::splat(0); F];
+        for f in 0..F {
+            interval[f] = L::Ints::load(&shown.interval[f][first..]);
+        }
+        let integral = function.integrate(interval, &fields, L::load(&shown.length_mm[first..]));
+        put(results, shown, first, &integral, L::ONE);
+    }
+}
+
+/// Cuts cells where a field crosses a knot, and integrates the pieces. A cut across a jump that is misplaced by `u` of a cell's
+/// length does `harm_per_mm` times that length of what may be tolerated; where rounding may do so, the error is infinite.
+#[inline(always)]
+pub(super) fn cut<L: Lanes, const F: usize>(
+    shown: &Shown<F>,
+    function: &impl Function<F>,
+    harm_per_mm: f32,
+    results: &mut Results,
+) {
+    for first in (0..shown.count).step_by(L::LANES) {
+        let fields = load_fields::<L, F>(shown, first);
+        let length_mm = L::load(&shown.length_mm[first..]);
+        let harm = L::from_f64(f64::from(harm_per_mm)) * length_mm;
+        let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
+        let mut runs: [Run<L>; F] = each(
+            #[inline(always)]
+            |f| Run::new(fields[f], function.axis(f)),
+        );
+        let mut total = Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO };
+        let (mut transmittance, mut from, mut pieces) = (L::ONE, L::ZERO, L::ZERO);
+        let mut misplaced = is_cell.and_not(is_cell);
+        loop {
+            let open = is_cell.and(from.lt(L::ONE));
+            if !open.any() {
+                break;
+            }
+            let mut next: [Next<L>; F] = each(
+                #[inline(always)]
+                |f| runs[f].next(function.axis(f), from),
+            );
+            let mut to = next[0].to;
+            for n in next.iter().skip(1) {
+                to = to.min(n.to);
+            }
+            let mut interval = [L::Ints::splat(0); F];
+            let mut parts = fields;
+            for f in 0..F {
+                interval[f] = runs[f].interval;
+                parts[f] = restrict(&fields[f], from, to);
+            }
+            let piece = function.integrate(interval, &parts, length_mm * (to - from));
+            for c in 0..3 {
+                total.radiance[c] += transmittance * piece.radiance[c];
+            }
+            total.error += transmittance * piece.error;
+            total.absorbed += transmittance * piece.absorbed;
+            transmittance = transmittance - transmittance * piece.absorbed;
+            pieces += L::select(open, L::ONE, L::ZERO);
+            for f in 0..F {
+                misplaced = misplaced.or(open.and(runs[f].is_misplaced(function.axis(f), &next[f], to, harm)));
+                runs[f].advance(&mut next[f], to);
+            }
+            from = to;
+        }
+        total.error = L::select(misplaced, L::from_f64(f64::INFINITY), total.error);
+        put(results, shown, first, &total, pieces);
+    }
+}
+
+#[inline(always)]
+fn load_fields<L: Lanes, const F: usize>(shown: &Shown<F>, first: usize) -> [Cubic<L>; F] {
+    each(
+        #[inline(always)]
+        |f| {
+            each(
+                #[inline(always)]
+                |k| L::load(&shown.fields[f][k][first..]),
+            )
+        },
+    )
+}
+
+#[inline(always)]
+fn put<L: Lanes, const F: usize>(
+    results: &mut Results,
+    shown: &Shown<F>,
+    first: usize,
+    integral: &Integral<L>,
+    pieces: L,
+) {
+    let mut lanes = [[0.0; 16]; 6];
+    let [r, g, b] = integral.radiance;
+    for (lane, x) in lanes.iter_mut().zip([r, g, b, integral.absorbed, integral.error, pieces]) {
+        x.store(lane);
+    }
+    let slots = &shown.slot[first..shown.count.min(first + L::LANES)];
+    for (k, &slot) in slots.iter().enumerate() {
+        let slot = slot as usize;
+        results.radiance[0][slot] = lanes[0][k];
+        results.radiance[1][slot] = lanes[1][k];
+        results.radiance[2][slot] = lanes[2][k];
+        results.absorbed[slot] = lanes[3][k];
+        results.error[slot] = lanes[4][k];
+        results.pieces[slot] = lanes[5][k];
+    }
+}
+
+/// A field on its way through a cell: from one critical point to the next it is monotone, and passes its intervals in order.
+#[derive(Clone, Copy)]
+struct Run<L: Lanes> {
+    cubic: Cubic<L>,
+    /// Critical points, ascending; 1 where there is none.
+    critical: [L; 2],
+    /// The value where the cell has been passed to.
+    at: L,
+    interval: L::Ints,
+    rounding: L,
+}
+
+/// Where a field's interval, or its direction, next changes.
+#[derive(Clone, Copy)]
+struct Next<L: Lanes> {
+    to: L,
+    /// The value there.
+    value: L,
+    crosses: L::Mask,
+    rises: L::Mask,
+    /// The end of the interval that it makes for.
+    end: L::Ints,
+}
+
+impl<L: Lanes> Run<L> {
+    #[inline(always)]
+    fn new(cubic: Cubic<L>, axis: &Axis) -> Self {
+        let critical = critical_points(&cubic);
+        let first_end = value(&cubic, critical[0]);
+        let rises = cubic[0].le(first_end);
+        let interval = L::Ints::select(rises, axis.interval(cubic[0]), axis.interval_below(cubic[0]));
+        let [low, high] = range(&cubic);
+        let rounding = L::from_f64(ROUNDINGS * f64::from(f32::EPSILON)) * low.abs().max(high.abs());
+        Run { cubic, critical, at: cubic[0], interval, rounding }
+    }
+
+    #[inline(always)]
+    fn next(&self, axis: &Axis, from: L) -> Next<L> {
+        let [first, second] = self.critical;
+        let turn = L::select(from.lt(first), first, L::select(from.lt(second), second, L::ONE));
+        let there = value(&self.cubic, turn);
+        let rises = self.at.le(there);
+        let end = L::Ints::select(rises, self.interval + L::Ints::splat(1), self.interval);
+        let level = axis.end::<L>(end);
+        let crosses = L::Mask::or(rises.and(level.lt(there)), there.lt(level).and_not(rises));
+        let crosses = crosses.and(from.lt(L::ONE));
+        let mut to = turn;
+        if crosses.any() {
+            to = L::select(crosses, crossing(&self.cubic, level, rises, crosses, from, turn), turn);
+        }
+        Next { to, value: L::select(crosses, level, there), crosses, rises, end }
+    }
+
+    /// Whether a cut at `to` is where a steep knot is crossed, or all but crossed, at an angle so flat that rounding matters.
+    #[inline(always)]
+    fn is_misplaced(&self, axis: &Axis, next: &Next<L>, to: L, harm: L) -> L::Mask {
+        let Some(steep) = axis.steep() else { return L::ONE.lt(L::ZERO) };
+        let here = next.to.le(to);
+        let flat = slope(&self.cubic, to).abs().lt(harm * self.rounding);
+        let grazes = next.crosses.and(flat).and(is_steep::<L>(steep, next.end));
+        // At a turn, either end of the interval may be touched.
+        let turns = to.lt(L::ONE).and_not(next.crosses);
+        let mut touches = here.and_not(here);
+        for end in [self.interval, self.interval + L::Ints::splat(1)] {
+            let near = (next.value - axis.end::<L>(end)).abs().le(self.rounding);
+            touches = touches.or(turns.and(near).and(is_steep::<L>(steep, end)));
+        }
+        here.and(grazes.or(touches))
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, next: &mut Next<L>, to: L) {
+        let here = next.to.le(to);
+        let crossed = here.and(next.crosses);
+        let (up, down) = (self.interval + L::Ints::splat(1), self.interval - L::Ints::splat(1));
+        self.interval = L::Ints::select(crossed, L::Ints::select(next.rises, up, down), self.interval);
+        self.at = L::select(here, next.value, value(&self.cubic, to));
+    }
+}
+
+/// Where in `(0, 1)` the derivative vanishes, ascending; 1 where it does not.
+#[inline(always)]
+fn critical_points<L: Lanes>(b: &Cubic<L>) -> [L; 2] {
+    let (d0, d1, d2) = (b[1] - b[0], b[2] - b[1], b[3] - b[2]);
+    // d(u) = d0 (1−u)² + 2 d1 u (1−u) + d2 u²  =  a u² + 2 h u + d0.
+    let a = (d0 - d1) + (d2 - d1);
+    let h = d1 - d0;
+    let discriminant = h * h - a * d0;
+    let root = discriminant.max(L::ZERO).sqrt();
+    // The stable pair of roots: no difference of nearly equal numbers.
+    let q = -(h + L::select(h.lt(L::ZERO), -root, root));
+    // NaN from 0 / 0 compares as outside.
+    let mut found = [d0 / q, q / a];
+    for u in &mut found {
+        let counts = is_between(*u, L::ZERO, L::ONE).and(L::ZERO.lt(discriminant));
+        *u = L::select(counts, *u, L::ONE);
+    }
+    [found[0].min(found[1]), found[0].max(found[1])]
+}
+
+#[inline(always)]
+fn is_between<L: Lanes>(u: L, low: L, high: L) -> L::Mask {
+    low.lt(u).and(u.lt(high))
+}
+
+#[inline(always)]
+fn is_steep<L: Lanes>(steep: &Table, end: L::Ints) -> L::Mask {
+    L::ZERO.lt(L::pick(steep, end))
+}
+
+/// Where cubics that are monotone on `[from, to]` take a level that lies between their values at the ends. Newton's iteration
+/// kept inside a shrinking bracket, begun where the chord crosses.
+#[inline(always)]
+fn crossing<L: Lanes>(b: &Cubic<L>, level: L, rises: L::Mask, wanted: L::Mask, from: L, to: L) -> L {
+    let b: Cubic<L> = each(
+        #[inline(always)]
+        |k| b[k] - level,
+    );
+    let half = L::from_f64(0.5);
+    let (mut low, mut high) = (from, to);
+    let (at_low, at_high) = (value(&b, from), value(&b, to));
+    let chord = low + (high - low) * (at_low / (at_low - at_high));
+    let mut u = L::select(is_between(chord, low, high), chord, half * (low + high));
+    let mut open = wanted;
+    for _ in 0..MOST_ITERATIONS {
+        let (p, q, r) = (lerp(b[0], b[1], u), lerp(b[1], b[2], u), lerp(b[2], b[3], u));
+        let (s, t) = (lerp(p, q, u), lerp(q, r, u));
+        let miss = lerp(s, t, u);
+        let is_above = L::ZERO.lt(miss);
+        // Beyond the crossing if above on the way up, or below on the way down.
+        let beyond = is_above.and(rises).or(wanted.and_not(is_above).and_not(rises));
+        high = L::select(beyond, u, high);
+        low = L::select(beyond, low, u);
+        let newton = u - miss / (L::from_f64(3.0) * (t - s));
+        // NaN and infinity from a flat place fail the comparison and bisect.
+        let next = L::select(is_between(newton, low, high), newton, half * (low + high));
+        let moved = L::from_f64(0.5 * f64::from(f32::EPSILON)).lt((next - u).abs());
+        let exact = miss.le(L::ZERO).and(L::ZERO.le(miss));
+        u = L::select(open.and_not(exact), next, u);
+        open = open.and(moved).and_not(exact);
+        if !open.any() {
+            break;
+        }
+    }
+    u
+}

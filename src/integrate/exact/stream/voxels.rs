@@ -1,0 +1,139 @@
+//! Samples at the corners of cells, in lanes.
+
+use glam::DMat3;
+
+use crate::field::{Macrocells, Trilinear, Voxel};
+use crate::integrate::occupancy::Occupancy;
+use crate::math::{Number, each};
+use crate::simd::{Ints, Lanes, Pairs};
+use crate::volume::{Rescale, Volume};
+
+/// Stored samples by voxel index, with what a gradient in HU/mm needs. Every axis has at least two voxels.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::integrate::exact) struct Voxels<'a, V> {
+    samples: &'a [V],
+    dims: [usize; 3],
+    to_value_per_mm: DMat3,
+}
+
+/// The lower corners of cells, voxel indices.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Corners<I> {
+    pub(super) cell: [I; 3],
+    /// Of the voxel, in memory.
+    pub(super) base: I,
+}
+
+impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
+    /// `None` for a lattice that is flat along an axis, uneven, or longer than lanes can index.
+    pub(in crate::integrate::exact) fn new(volume: &'a Volume, samples: &'a [V]) -> Option<Self> {
+        let dims = volume.grid().dims();
+        let fits = dims.iter().all(|&n| n >= 2) && samples.len() <= i32::MAX as usize && volume.slices().is_none();
+        let Rescale { slope, .. } = volume.rescale();
+        fits.then(|| Voxels { samples, dims, to_value_per_mm: volume.grid().gradient_to_per_mm() * slope })
+    }
+
+    /// Where something may show, given the ranges of stored values at which it does.
+    pub(in crate::integrate::exact) fn occupancy(&self, may_show: impl Fn([f32; 2]) -> bool) -> Occupancy {
+        match Trilinear::new(self.samples, self.dims) {
+            Ok(field) => Occupancy::new(&Macrocells::new(&field), may_show),
+            // Longer than macrocells address.
+            Err(_) => Occupancy::full(self.dims),
+        }
+    }
+
+    pub(super) fn dims(&self) -> [usize; 3] {
+        self.dims
+    }
+
+    /// Place in memory of a voxel.
+    #[inline(always)]
+    pub(super) fn base(&self, [i, j, k]: [usize; 3]) -> usize {
+        i + self.dims[0] * (j + self.dims[1] * k)
+    }
+
+    /// Stored samples at the corners of cells, x fastest.
+    #[inline(always)]
+    pub(super) fn corners<L: Lanes>(&self, base: L::Ints) -> [L; 8] {
+        let [nx, ny, _] = self.dims;
+        let mut corners = [L::ZERO; 8];
+        for (row, offset) in [0, nx, nx * ny, nx + nx * ny].into_iter().enumerate() {
+            [corners[2 * row], corners[2 * row + 1]] = self.pair::<L>(base + splat::<L>(offset));
+        }
+        corners
+    }
+
+    /// The samples at places in memory, and their neighbours along x.
+    #[inline(always)]
+    fn pair<L: Lanes>(&self, at: L::Ints) -> [L; 2] {
+        V::pairs::<L>(self.samples, at)
+    }
+
+    /// Gradients in HU/mm at the corners of cells, of which these are the samples: central differences, one-sided at the
+    /// border.
+    #[inline(always)]
+    pub(super) fn gradients<L: Lanes>(&self, at: &Corners<L::Ints>, corners: &[L; 8]) -> [[L; 8]; 3] {
+        let [nx, ny, _] = self.dims;
+        let strides = [1, nx, nx * ny];
+        let (half, one) = (L::from_f64(0.5), L::ONE);
+        let mut per_index = [[L::ZERO; 8]; 3];
+        for axis in 0..3 {
+            // At the border, the voxel itself stands in for the neighbour that is not there.
+            let first = at.cell[axis].eq(splat::<L>(0));
+            let last = at.cell[axis].eq(splat::<L>(self.dims[axis] - 2));
+            let below = L::Ints::select(first, splat::<L>(0), L::Ints::splat(-(strides[axis] as i32)));
+            let above = L::Ints::select(last, splat::<L>(strides[axis]), splat::<L>(2 * strides[axis]));
+            let (low_scale, high_scale) = (L::select(first, one, half), L::select(last, one, half));
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            let component = &mut per_index[axis];
+            // Edges of the cell along the axis by their lower corners, and the corners' places.
+            let (p, q) = (u.min(v), u.max(v));
+            for (low, offset) in [(0, 0), (1 << q, strides[q])] {
+                let (before, after): ([L; 2], [L; 2]) = if axis == 0 {
+                    // A pair along x has one voxel beyond the cell, for each of two rows.
+                    let (base, next) = (at.base + splat::<L>(offset), at.base + splat::<L>(offset + strides[p]));
+                    let one_less = above - splat::<L>(1);
+                    let ([b0, _], [b1, _]) = (self.pair::<L>(base + below), self.pair::<L>(next + below));
+                    let ([_, a0], [_, a1]) = (self.pair::<L>(base + one_less), self.pair::<L>(next + one_less));
+                    ([b0, b1], [a0, a1])
+                } else {
+                    // A pair along x beyond the cell serves two edges.
+                    let base = at.base + splat::<L>(offset);
+                    (self.pair::<L>(base + below), self.pair::<L>(base + above))
+                };
+                for n in 0..2 {
+                    let low = low | n << p;
+                    let high = low | 1 << axis;
+                    component[low] = (corners[high] - before[n]) * low_scale;
+                    component[high] = (after[n] - corners[low]) * high_scale;
+                }
+            }
+        }
+        let m = self.to_value_per_mm.to_cols_array_2d();
+        let mut gradients = [[L::ZERO; 8]; 3];
+        for (row, component) in gradients.iter_mut().enumerate() {
+            *component = each(
+                #[inline(always)]
+                |c| {
+                    let [x, y, z] = per_index;
+                    L::from_f64(m[0][row]) * x[c] + L::from_f64(m[1][row]) * y[c] + L::from_f64(m[2][row]) * z[c]
+                },
+            );
+        }
+        gradients
+    }
+}
+
+#[inline(always)]
+fn splat<L: Lanes>(x: usize) -> L::Ints {
+    L::Ints::splat(x as i32)
+}
+
+/// Gradient magnitudes at the corners of cells from the gradients there.
+#[inline(always)]
+pub(super) fn magnitudes<N: Number>([x, y, z]: &[[N; 8]; 3]) -> [N; 8] {
+    each(
+        #[inline(always)]
+        |c| (x[c] * x[c] + y[c] * y[c] + z[c] * z[c]).sqrt(),
+    )
+}

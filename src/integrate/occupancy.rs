@@ -1,0 +1,100 @@
+//! Where something may show: blocks of cells, and the empty neighbourhoods around the others.
+
+use crate::field::Macrocells;
+
+/// Base-2 logarithm of the cells per axis of the largest neighbourhood that is known to be empty.
+const LOG2_LARGEST: u32 = 7;
+
+/// For each block of cells the largest aligned cube of cells around it in which nothing shows.
+#[derive(Debug, Clone)]
+pub(super) struct Occupancy {
+    blocks: [usize; 3],
+    /// Base-2 logarithm of the cube's cells per axis; 0 where something may show.
+    empty: Vec<u8>,
+}
+
+impl Occupancy {
+    /// Nothing is known to be empty.
+    pub(super) fn full(dims: [usize; 3]) -> Self {
+        let blocks = Macrocells::blocks_of(dims);
+        Occupancy { blocks, empty: vec![0; blocks.iter().product()] }
+    }
+
+    /// The blocks whose range of stored values, with what rounding makes of interpolated ones, may show something.
+    pub(super) fn new(values: &Macrocells, may_show: impl Fn([f32; 2]) -> bool) -> Self {
+        let blocks = values.blocks();
+        let is_empty = |range: &[f32; 2]| !may_show(super::empty_space::widened(*range));
+        let log2_block = Macrocells::LOG2_CELLS;
+        let empty = values.ranges().iter().map(|range| if is_empty(range) { log2_block as u8 } else { 0 }).collect();
+        let mut occupancy = Occupancy { blocks, empty };
+        for log2_cells in log2_block + 1..=LOG2_LARGEST {
+            occupancy.join(log2_cells - log2_block, log2_cells as u8);
+        }
+        occupancy
+    }
+
+    /// Joins cubes of `1 << log2_blocks` blocks per axis that are empty all over.
+    fn join(&mut self, log2_blocks: u32, log2_cells: u8) {
+        let [nx, ny, nz] = self.blocks;
+        let side = 1 << log2_blocks;
+        let span = |from: usize, n: usize| from..(from + side).min(n);
+        for z in (0..nz).step_by(side) {
+            for y in (0..ny).step_by(side) {
+                for x in (0..nx).step_by(side) {
+                    let rows = || span(z, nz).flat_map(move |k| span(y, ny).map(move |j| nx * (j + ny * k)));
+                    // What lies beyond the lattice is empty, too.
+                    if rows().all(|row| span(x, nx).all(|i| self.empty[row + i] + 1 >= log2_cells)) {
+                        rows().for_each(|row| self.empty[row..][span(x, nx)].fill(log2_cells));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The cube of cells around a cell: the base-2 logarithm of its cells per axis, and whether nothing shows in it.
+    #[inline(always)]
+    pub(super) fn around(&self, cell: [i32; 3]) -> (u32, bool) {
+        let [i, j, k] = cell.map(|c| (c >> Macrocells::LOG2_CELLS) as usize);
+        match self.empty[i + self.blocks[0] * (j + self.blocks[1] * k)] {
+            0 => (Macrocells::LOG2_CELLS, false),
+            log2_cells => (u32::from(log2_cells), true),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::Trilinear;
+
+    #[test]
+    fn cubes_are_empty_aligned_and_as_large_as_can_be() {
+        let dims = [150, 90, 70];
+        let mut samples = vec![0i16; dims.iter().product()];
+        let lit = [[3, 5, 2], [149, 80, 40], [70, 33, 66]];
+        for [i, j, k] in lit {
+            samples[i + dims[0] * (j + dims[1] * k)] = 100;
+        }
+        let macrocells = Macrocells::new(&Trilinear::new(&samples, dims).unwrap());
+        let occupancy = Occupancy::new(&macrocells, |[_, high]| high > 50.0);
+        // A voxel lights the cells around it.
+        let shows = |cell: [usize; 3]| lit.iter().any(|v| (0..3).all(|a| v[a] == cell[a] || v[a] == cell[a] + 1));
+        let cube_shows = |cell: [usize; 3], log2: u32| {
+            let low = cell.map(|c| c >> log2 << log2);
+            let each = |a: usize| low[a]..(low[a] + (1 << log2)).min(dims[a] - 1);
+            each(2).any(|k| each(1).any(|j| each(0).any(|i| shows([i, j, k]))))
+        };
+        let mut largest = 0;
+        for n in 0..2000 {
+            let cell = [n * 37 % 149, n * 53 % 89, n * 29 % 69];
+            let (log2, is_empty) = occupancy.around(cell.map(|c| c as i32));
+            assert_eq!(is_empty, !cube_shows(cell, log2), "cell {cell:?}, cube of 2^{log2}");
+            if is_empty && log2 < LOG2_LARGEST {
+                assert!(cube_shows(cell, log2 + 1), "cell {cell:?} could leap further than 2^{log2}");
+            }
+            largest = largest.max(log2);
+        }
+        assert!(largest >= 5, "found cubes of up to 2^{largest} cells");
+        assert_eq!(Occupancy::full(dims).around([5, 5, 5]), (3, false));
+    }
+}
