@@ -1,6 +1,7 @@
 //! Where something may show: blocks of cells, and the empty neighbourhoods around the others.
 
 use crate::field::Macrocells;
+use crate::simd::{Ints, Lanes, Mask};
 
 /// Base-2 logarithm of the cells per axis of the largest neighbourhood that is known to be empty.
 const LOG2_LARGEST: u32 = 7;
@@ -9,7 +10,8 @@ const LOG2_LARGEST: u32 = 7;
 #[derive(Debug, Clone)]
 pub(super) struct Occupancy {
     blocks: [usize; 3],
-    /// Base-2 logarithm of the cube's cells per axis; 0 where something may show.
+    /// Base-2 logarithm of the cube's cells per axis; 0 where something may show. Three bytes more than blocks, so that
+    /// four can be read at any of them.
     empty: Vec<u8>,
 }
 
@@ -17,7 +19,7 @@ impl Occupancy {
     /// Nothing is known to be empty.
     pub(super) fn full(dims: [usize; 3]) -> Self {
         let blocks = Macrocells::blocks_of(dims);
-        Occupancy { blocks, empty: vec![0; blocks.iter().product()] }
+        Occupancy { blocks, empty: vec![0; blocks.iter().product::<usize>() + 3] }
     }
 
     /// The blocks whose range of stored values, with what rounding makes of interpolated ones, may show something.
@@ -25,7 +27,8 @@ impl Occupancy {
         let blocks = values.blocks();
         let is_empty = |range: &[f32; 2]| !may_show(super::empty_space::widened(*range));
         let log2_block = Macrocells::LOG2_CELLS;
-        let empty = values.ranges().iter().map(|range| if is_empty(range) { log2_block as u8 } else { 0 }).collect();
+        let known = values.ranges().iter().map(|range| if is_empty(range) { log2_block as u8 } else { 0 });
+        let empty = known.chain([0; 3]).collect();
         let mut occupancy = Occupancy { blocks, empty };
         for log2_cells in log2_block + 1..=LOG2_LARGEST {
             occupancy.join(log2_cells - log2_block, log2_cells as u8);
@@ -51,14 +54,16 @@ impl Occupancy {
         }
     }
 
-    /// The cube of cells around a cell: the base-2 logarithm of its cells per axis, and whether nothing shows in it.
+    /// The cubes of cells around cells: the base-2 logarithm of their cells per axis, and whether nothing shows in them.
     #[inline(always)]
-    pub(super) fn around(&self, cell: [i32; 3]) -> (u32, bool) {
-        let [i, j, k] = cell.map(|c| (c >> Macrocells::LOG2_CELLS) as usize);
-        match self.empty[i + self.blocks[0] * (j + self.blocks[1] * k)] {
-            0 => (Macrocells::LOG2_CELLS, false),
-            log2_cells => (u32::from(log2_cells), true),
-        }
+    pub(super) fn around<L: Lanes>(&self, [i, j, k]: [L::Ints; 3]) -> (L::Ints, L::Mask) {
+        const LOG2_BLOCK: u32 = Macrocells::LOG2_CELLS;
+        let [nx, ny, _] = self.blocks;
+        let (row, slab) = (L::Ints::splat(nx as i32), L::Ints::splat((nx * ny) as i32));
+        let [i, j, k] = [i.shifted::<LOG2_BLOCK>(), j.shifted::<LOG2_BLOCK>(), k.shifted::<LOG2_BLOCK>()];
+        let known = L::Ints::bytes(&self.empty, i + j.times(row) + k.times(slab));
+        let shows = known.eq(L::Ints::splat(0));
+        (L::Ints::select(shows, L::Ints::splat(LOG2_BLOCK as i32), known), <L::Mask as Mask>::ALL.and_not(shows))
     }
 }
 
@@ -87,14 +92,15 @@ mod tests {
         let mut largest = 0;
         for n in 0..2000 {
             let cell = [n * 37 % 149, n * 53 % 89, n * 29 % 69];
-            let (log2, is_empty) = occupancy.around(cell.map(|c| c as i32));
+            let (log2, is_empty) = occupancy.around::<f32>(cell.map(|c| c as i32));
+            let log2 = log2 as u32;
             assert_eq!(is_empty, !cube_shows(cell, log2), "cell {cell:?}, cube of 2^{log2}");
             if is_empty && log2 < LOG2_LARGEST {
                 assert!(cube_shows(cell, log2 + 1), "cell {cell:?} could leap further than 2^{log2}");
             }
-            largest = largest.max(log2);
+            largest = u32::max(largest, log2);
         }
         assert!(largest >= 5, "found cubes of up to 2^{largest} cells");
-        assert_eq!(Occupancy::full(dims).around([5, 5, 5]), (3, false));
+        assert_eq!(Occupancy::full(dims).around::<f32>([5, 5, 5]), (3, false));
     }
 }

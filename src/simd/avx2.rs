@@ -5,9 +5,9 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::lanes::{absorbed, last_pair, mean_transmittance};
-use super::register::arithmetic;
-use super::{Ints, Kernel, Lanes, Mask, Table};
+use super::lanes::{absorbed, last_pair, last_word, mean_transmittance};
+use super::register::{arithmetic, operators};
+use super::{Doubles, Ints, Kernel, Lanes, Mask, Table};
 use crate::math::Number;
 
 /// Runs a kernel compiled for these instructions.
@@ -26,6 +26,10 @@ pub(crate) struct F32x8(__m256);
 /// Eight i32.
 #[derive(Clone, Copy)]
 pub(crate) struct I32x8(__m256i);
+
+/// Eight f64, in two registers.
+#[derive(Clone, Copy)]
+pub(crate) struct F64x8([__m256d; 2]);
 
 /// Eight truths: all bits of a lane, or none.
 #[derive(Clone, Copy)]
@@ -80,8 +84,14 @@ fn clamped(at: I32x8, last: u32) -> __m256i {
 impl Lanes for F32x8 {
     const LANES: usize = 8;
     type Ints = I32x8;
+    type Doubles = F64x8;
     type Mask = Mask8;
 
+    #[inline(always)]
+    fn from_doubles(doubles: F64x8) -> Self {
+        let [low, high] = doubles.0;
+        F32x8(unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low)) })
+    }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
         F32x8(unsafe { _mm256_loadu_ps(from[..8].as_ptr()) })
@@ -158,6 +168,107 @@ impl Lanes for F32x8 {
     }
 }
 
+operators!(F64x8, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd);
+
+impl F64x8 {
+    /// The truths of two registers of four.
+    #[inline(always)]
+    fn joined(low: __m256d, high: __m256d) -> Mask8 {
+        Mask8(unsafe {
+            // The lower half of each truth, in an order that the next instruction mends.
+            let mixed = _mm256_shuffle_ps::<0b10_00_10_00>(_mm256_castpd_ps(low), _mm256_castpd_ps(high));
+            _mm256_castpd_ps(_mm256_permute4x64_pd::<0b11_01_10_00>(_mm256_castps_pd(mixed)))
+        })
+    }
+
+    /// Truths for two registers of four.
+    #[inline(always)]
+    fn split(mask: Mask8) -> [__m256d; 2] {
+        unsafe {
+            let ints = _mm256_castps_si256(mask.0);
+            let (low, high) = (_mm256_castsi256_si128(ints), _mm256_extracti128_si256::<1>(ints));
+            [_mm256_castsi256_pd(_mm256_cvtepi32_epi64(low)), _mm256_castsi256_pd(_mm256_cvtepi32_epi64(high))]
+        }
+    }
+}
+
+impl Doubles for F64x8 {
+    type Ints = I32x8;
+    type Mask = Mask8;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        F64x8(unsafe { [_mm256_set1_pd(x), _mm256_set1_pd(x)] })
+    }
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let (low, high) = from[..8].split_at(4);
+        F64x8(unsafe { [_mm256_loadu_pd(low.as_ptr()), _mm256_loadu_pd(high.as_ptr())] })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        let (low, high) = to[..8].split_at_mut(4);
+        unsafe {
+            _mm256_storeu_pd(low.as_mut_ptr(), self.0[0]);
+            _mm256_storeu_pd(high.as_mut_ptr(), self.0[1]);
+        }
+    }
+    #[inline(always)]
+    fn from_ints(ints: I32x8) -> Self {
+        F64x8(unsafe {
+            let (low, high) = (_mm256_castsi256_si128(ints.0), _mm256_extracti128_si256::<1>(ints.0));
+            [_mm256_cvtepi32_pd(low), _mm256_cvtepi32_pd(high)]
+        })
+    }
+    #[inline(always)]
+    fn to_ints(self) -> I32x8 {
+        let [low, high] = self.0;
+        I32x8(unsafe { _mm256_set_m128i(_mm256_cvttpd_epi32(high), _mm256_cvttpd_epi32(low)) })
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        let [low, high] = self.0;
+        F64x8(unsafe { [_mm256_floor_pd(low), _mm256_floor_pd(high)] })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        F64x8(unsafe { [_mm256_min_pd(c, a), _mm256_min_pd(d, b)] })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        F64x8(unsafe { [_mm256_max_pd(c, a), _mm256_max_pd(d, b)] })
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask8 {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        let (low, high) = unsafe { (_mm256_cmp_pd::<_CMP_LT_OQ>(a, c), _mm256_cmp_pd::<_CMP_LT_OQ>(b, d)) };
+        F64x8::joined(low, high)
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Mask8 {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        let (low, high) = unsafe { (_mm256_cmp_pd::<_CMP_LE_OQ>(a, c), _mm256_cmp_pd::<_CMP_LE_OQ>(b, d)) };
+        F64x8::joined(low, high)
+    }
+    #[inline(always)]
+    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
+        let ([a, b], [c, d], [low, high]) = (yes.0, no.0, F64x8::split(mask));
+        F64x8(unsafe { [_mm256_blendv_pd(c, a, low), _mm256_blendv_pd(d, b, high)] })
+    }
+    #[inline(always)]
+    fn compress(self, mask: Mask8) -> Self {
+        let mut lanes = [0.0; 8];
+        self.store(&mut lanes);
+        let mut kept = [0.0; 8];
+        for (to, &from) in kept.iter_mut().zip(&COMPRESSED[mask.bits() as usize & 255]) {
+            *to = lanes[from as usize & 7];
+        }
+        F64x8::load(&kept)
+    }
+}
+
 impl Default for I32x8 {
     #[inline(always)]
     fn default() -> Self {
@@ -199,6 +310,38 @@ impl Ints for I32x8 {
     #[inline(always)]
     fn store(self, to: &mut [i32]) {
         unsafe { _mm256_storeu_si256(to[..8].as_mut_ptr().cast(), self.0) }
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        I32x8(unsafe { _mm256_mullo_epi32(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        I32x8(unsafe { _mm256_min_epi32(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        I32x8(unsafe { _mm256_max_epi32(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn without_low_bits(self, by: Self) -> Self {
+        I32x8(unsafe { _mm256_sllv_epi32(_mm256_srav_epi32(self.0, by.0), by.0) })
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        I32x8(unsafe { _mm256_sllv_epi32(_mm256_set1_epi32(1), self.0) })
+    }
+    #[inline(always)]
+    fn shifted<const BY: u32>(self) -> Self {
+        // Any number of bits at run time: this one wants them as i32.
+        I32x8(unsafe { _mm256_srav_epi32(self.0, _mm256_set1_epi32(BY as i32)) })
+    }
+    #[inline(always)]
+    fn bytes(from: &[u8], at: Self) -> Self {
+        unsafe {
+            let words = _mm256_i32gather_epi32::<1>(from.as_ptr().cast(), clamped(at, last_word(from)));
+            I32x8(_mm256_and_si256(words, _mm256_set1_epi32(0xff)))
+        }
     }
     #[inline(always)]
     fn eq(self, other: Self) -> Mask8 {

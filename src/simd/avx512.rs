@@ -5,9 +5,9 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::lanes::{absorbed, last_pair, mean_transmittance};
-use super::register::arithmetic;
-use super::{Ints, Kernel, Lanes, Mask, Table};
+use super::lanes::{absorbed, last_pair, last_word, mean_transmittance};
+use super::register::{arithmetic, operators};
+use super::{Doubles, Ints, Kernel, Lanes, Mask, Table};
 use crate::math::Number;
 
 /// Runs a kernel compiled for these instructions.
@@ -26,6 +26,10 @@ pub(crate) struct F32x16(__m512);
 /// Sixteen i32.
 #[derive(Clone, Copy)]
 pub(crate) struct I32x16(__m512i);
+
+/// Sixteen f64, in two registers.
+#[derive(Clone, Copy)]
+pub(crate) struct F64x16([__m512d; 2]);
 
 /// Sixteen truths.
 #[derive(Clone, Copy)]
@@ -52,8 +56,17 @@ arithmetic!(
 impl Lanes for F32x16 {
     const LANES: usize = 16;
     type Ints = I32x16;
+    type Doubles = F64x16;
     type Mask = Mask16;
 
+    #[inline(always)]
+    fn from_doubles(doubles: F64x16) -> Self {
+        let [low, high] = doubles.0;
+        F32x16(unsafe {
+            let low = _mm512_castps256_ps512(_mm512_cvtpd_ps(low));
+            _mm512_insertf32x8::<1>(low, _mm512_cvtpd_ps(high))
+        })
+    }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
         F32x16(unsafe { _mm512_loadu_ps(from[..16].as_ptr()) })
@@ -133,6 +146,90 @@ impl Lanes for F32x16 {
     }
 }
 
+operators!(F64x16, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd);
+
+impl Doubles for F64x16 {
+    type Ints = I32x16;
+    type Mask = Mask16;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        F64x16(unsafe { [_mm512_set1_pd(x), _mm512_set1_pd(x)] })
+    }
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let (low, high) = from[..16].split_at(8);
+        F64x16(unsafe { [_mm512_loadu_pd(low.as_ptr()), _mm512_loadu_pd(high.as_ptr())] })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        let (low, high) = to[..16].split_at_mut(8);
+        unsafe {
+            _mm512_storeu_pd(low.as_mut_ptr(), self.0[0]);
+            _mm512_storeu_pd(high.as_mut_ptr(), self.0[1]);
+        }
+    }
+    #[inline(always)]
+    fn from_ints(ints: I32x16) -> Self {
+        F64x16(unsafe {
+            let (low, high) = (_mm512_castsi512_si256(ints.0), _mm512_extracti64x4_epi64::<1>(ints.0));
+            [_mm512_cvtepi32_pd(low), _mm512_cvtepi32_pd(high)]
+        })
+    }
+    #[inline(always)]
+    fn to_ints(self) -> I32x16 {
+        let [low, high] = self.0;
+        I32x16(unsafe {
+            let low = _mm512_castsi256_si512(_mm512_cvttpd_epi32(low));
+            _mm512_inserti64x4::<1>(low, _mm512_cvttpd_epi32(high))
+        })
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        let [low, high] = self.0;
+        const DOWN: i32 = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
+        F64x16(unsafe { [_mm512_roundscale_pd::<DOWN>(low), _mm512_roundscale_pd::<DOWN>(high)] })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        F64x16(unsafe { [_mm512_min_pd(c, a), _mm512_min_pd(d, b)] })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        F64x16(unsafe { [_mm512_max_pd(c, a), _mm512_max_pd(d, b)] })
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask16 {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        let (low, high) = unsafe { (_mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, c), _mm512_cmp_pd_mask::<_CMP_LT_OQ>(b, d)) };
+        Mask16(u16::from(low) | u16::from(high) << 8)
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Mask16 {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        let (low, high) = unsafe { (_mm512_cmp_pd_mask::<_CMP_LE_OQ>(a, c), _mm512_cmp_pd_mask::<_CMP_LE_OQ>(b, d)) };
+        Mask16(u16::from(low) | u16::from(high) << 8)
+    }
+    #[inline(always)]
+    fn select(mask: Mask16, yes: Self, no: Self) -> Self {
+        let ([a, b], [c, d]) = (yes.0, no.0);
+        F64x16(unsafe { [_mm512_mask_blend_pd(mask.0 as u8, c, a), _mm512_mask_blend_pd((mask.0 >> 8) as u8, d, b)] })
+    }
+    #[inline(always)]
+    fn compress(self, mask: Mask16) -> Self {
+        let [low, high] = self.0;
+        let mut lanes = [0.0; 24];
+        let kept = (mask.0 as u8).count_ones() as usize;
+        unsafe {
+            _mm512_storeu_pd(lanes.as_mut_ptr(), _mm512_maskz_compress_pd(mask.0 as u8, low));
+            _mm512_storeu_pd(lanes[kept..kept + 8].as_mut_ptr(), _mm512_maskz_compress_pd((mask.0 >> 8) as u8, high));
+        }
+        F64x16::load(&lanes)
+    }
+}
+
 impl Default for I32x16 {
     #[inline(always)]
     fn default() -> Self {
@@ -174,6 +271,38 @@ impl Ints for I32x16 {
     #[inline(always)]
     fn store(self, to: &mut [i32]) {
         unsafe { _mm512_storeu_si512(to[..16].as_mut_ptr().cast(), self.0) }
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        I32x16(unsafe { _mm512_mullo_epi32(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        I32x16(unsafe { _mm512_min_epi32(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        I32x16(unsafe { _mm512_max_epi32(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn without_low_bits(self, by: Self) -> Self {
+        I32x16(unsafe { _mm512_sllv_epi32(_mm512_srav_epi32(self.0, by.0), by.0) })
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        I32x16(unsafe { _mm512_sllv_epi32(_mm512_set1_epi32(1), self.0) })
+    }
+    #[inline(always)]
+    fn shifted<const BY: u32>(self) -> Self {
+        I32x16(unsafe { _mm512_srai_epi32::<BY>(self.0) })
+    }
+    #[inline(always)]
+    fn bytes(from: &[u8], at: Self) -> Self {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_word(from) as i32));
+            let words = _mm512_i32gather_epi32::<1>(at, from.as_ptr().cast());
+            I32x16(_mm512_and_si512(words, _mm512_set1_epi32(0xff)))
+        }
     }
     #[inline(always)]
     fn eq(self, other: Self) -> Mask16 {

@@ -1,6 +1,6 @@
 //! What a vector register can do.
 
-use std::ops::{Add, Sub};
+use std::ops::{Add, Mul, Sub};
 
 use super::Table;
 use crate::math::Number;
@@ -11,9 +11,13 @@ pub(crate) trait Lanes: Number {
     const LANES: usize;
     /// As many integers.
     type Ints: Ints<Mask = Self::Mask>;
+    /// As many f64.
+    type Doubles: Doubles<Ints = Self::Ints, Mask = Self::Mask>;
     /// As many truths.
     type Mask: Mask;
 
+    /// The nearest f32 to each f64.
+    fn from_doubles(doubles: Self::Doubles) -> Self;
     /// The first numbers of a slice, which has at least as many.
     fn load(from: &[f32]) -> Self;
     /// Overwrites the first numbers of a slice, which has at least as many.
@@ -42,6 +46,39 @@ pub(crate) trait Lanes: Number {
     fn compress(self, mask: Self::Mask) -> Self;
 }
 
+/// f64 numbers side by side.
+pub(crate) trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static {
+    /// As many integers.
+    type Ints: Ints;
+    /// As many truths.
+    type Mask: Mask;
+
+    /// The same number in every lane.
+    fn splat(x: f64) -> Self;
+    /// The first numbers of a slice, which has at least as many.
+    fn load(from: &[f64]) -> Self;
+    /// Overwrites the first numbers of a slice, which has at least as many.
+    fn store(self, to: &mut [f64]);
+    /// Each integer, exactly.
+    fn from_ints(ints: Self::Ints) -> Self;
+    /// Towards 0; numbers that fit.
+    fn to_ints(self) -> Self::Ints;
+    /// The largest whole number that is not larger.
+    fn floor(self) -> Self;
+    /// The smaller one.
+    fn min(self, other: Self) -> Self;
+    /// The larger one.
+    fn max(self, other: Self) -> Self;
+    /// `self < other`, false for NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self ≤ other`, false for NaN.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is true, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
+    fn compress(self, mask: Self::Mask) -> Self;
+}
+
 /// i32 numbers side by side.
 pub(crate) trait Ints: Copy + Default + Add<Output = Self> + Sub<Output = Self> + 'static {
     /// As many truths.
@@ -55,6 +92,20 @@ pub(crate) trait Ints: Copy + Default + Add<Output = Self> + Sub<Output = Self> 
     fn load(from: &[i32]) -> Self;
     /// Overwrites the first numbers of a slice, which has at least as many.
     fn store(self, to: &mut [i32]);
+    /// `self · other`, of numbers whose product fits.
+    fn times(self, other: Self) -> Self;
+    /// The lower number.
+    fn min(self, other: Self) -> Self;
+    /// The higher number.
+    fn max(self, other: Self) -> Self;
+    /// Each without its `by` lowest bits: rounded down to a multiple of 2^`by`, `by` from 0 to 31.
+    fn without_low_bits(self, by: Self) -> Self;
+    /// 2^`self`, for numbers from 0 to 30.
+    fn power_of_two(self) -> Self;
+    /// Divided by 2^`BY`, rounded down.
+    fn shifted<const BY: u32>(self) -> Self;
+    /// Bytes of a slice; indices beyond its end give another byte of it. It has at least four.
+    fn bytes(from: &[u8], at: Self) -> Self;
     /// `self = other`.
     fn eq(self, other: Self) -> Self::Mask;
     /// `self < other`.
@@ -111,6 +162,14 @@ impl Pairs for f32 {
 pub(super) fn last_pair<T>(samples: &[T]) -> u32 {
     assert!(samples.len() >= 2, "a pair has two samples");
     (samples.len() - 2).min(i32::MAX as usize) as u32
+}
+
+/// The last index at which four bytes can be read.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(super) fn last_word(bytes: &[u8]) -> u32 {
+    assert!(bytes.len() >= 4, "a word has four bytes");
+    (bytes.len() - 4).min(i32::MAX as usize) as u32
 }
 
 /// `1 − e^{−τ}` as [`absorbed_f32`](crate::math::absorbed_f32) has it, operation by operation.

@@ -20,7 +20,7 @@ mod table;
 
 pub use level::Level;
 
-pub(crate) use lanes::{Ints, Lanes, Mask, Pairs};
+pub(crate) use lanes::{Doubles, Ints, Lanes, Mask, Pairs};
 pub(crate) use level::Kernel;
 pub(crate) use table::Table;
 

@@ -92,4 +92,24 @@ macro_rules! arithmetic {
     };
 }
 
-pub(super) use arithmetic;
+/// Implements the operators of f64 in two registers, given the intrinsics.
+macro_rules! operators {
+    ($register:ident, $add:ident, $sub:ident, $mul:ident) => {
+        operators!(@operator $register, Add, add, $add);
+        operators!(@operator $register, Sub, sub, $sub);
+        operators!(@operator $register, Mul, mul, $mul);
+    };
+    (@operator $register:ident, $trait:ident, $method:ident, $intrinsic:ident) => {
+        impl $trait for $register {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let ([a, b], [c, d]) = (self.0, other.0);
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { [$intrinsic(a, c), $intrinsic(b, d)] })
+            }
+        }
+    };
+}
+
+pub(super) use {arithmetic, operators};

@@ -1,13 +1,18 @@
 //! One lane: the twin of every register, on any processor.
 
 use super::lanes::last_pair;
-use super::{Ints, Lanes, Mask, Table};
+use super::{Doubles, Ints, Lanes, Mask, Table};
 
 impl Lanes for f32 {
     const LANES: usize = 1;
     type Ints = i32;
+    type Doubles = f64;
     type Mask = bool;
 
+    #[inline(always)]
+    fn from_doubles(doubles: f64) -> Self {
+        doubles as f32
+    }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
         from[0]
@@ -65,6 +70,60 @@ impl Lanes for f32 {
     }
 }
 
+impl Doubles for f64 {
+    type Ints = i32;
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        from[0]
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[0] = self;
+    }
+    #[inline(always)]
+    fn from_ints(ints: i32) -> Self {
+        f64::from(ints)
+    }
+    #[inline(always)]
+    fn to_ints(self) -> i32 {
+        self as i32
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.floor()
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn compress(self, _: bool) -> Self {
+        self
+    }
+}
+
 impl Ints for i32 {
     type Mask = bool;
 
@@ -83,6 +142,34 @@ impl Ints for i32 {
     #[inline(always)]
     fn store(self, to: &mut [i32]) {
         to[0] = self;
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        self * other
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Ord::min(self, other)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Ord::max(self, other)
+    }
+    #[inline(always)]
+    fn without_low_bits(self, by: Self) -> Self {
+        self >> by << by
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        1 << self
+    }
+    #[inline(always)]
+    fn shifted<const BY: u32>(self) -> Self {
+        self >> BY
+    }
+    #[inline(always)]
+    fn bytes(from: &[u8], at: Self) -> Self {
+        i32::from(from[(at as u32 as usize).min(from.len() - 4)])
     }
     #[inline(always)]
     fn eq(self, other: Self) -> bool {

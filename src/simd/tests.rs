@@ -1,6 +1,6 @@
 //! One body over all levels: every lane does what one number does, to the bit.
 
-use super::{Ints, Kernel, Lanes, Level, Mask, Pairs, Table};
+use super::{Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, Table};
 
 /// Numbers of all magnitudes, signs and roundings, the same on each call.
 fn numbers(count: usize, seed: u32) -> Vec<f32> {
@@ -24,8 +24,9 @@ impl Kernel for Everything {
         let (a, b) = (numbers(4096, 1), numbers(4096, 2));
         let samples: Vec<i16> = numbers(999, 3).iter().map(|x| (x * 100.0) as i16).collect();
         let tables = [9, 31, 50].map(|n| Table::new(&numbers(n, 4)));
+        let bytes: Vec<u8> = samples.iter().map(|&x| x as u8).collect();
         let places: Vec<i32> = a.iter().map(|x| (x.abs() * 7.0) as i32).collect();
-        let mut out = vec![Vec::new(); 32];
+        let mut out = vec![Vec::new(); 48];
         for at in (0..4096).step_by(L::LANES) {
             let (x, y) = (L::load(&a[at..]), L::load(&b[at..]));
             let places = L::Ints::load(&places[at..]);
@@ -60,8 +61,25 @@ impl Kernel for Everything {
             ];
             let [first, second] = i16::pairs::<L>(&samples, places);
             let [third, fourth] = f32::pairs::<L>(&b, places);
+            let (d, e) = (L::Doubles::from_ints(places) * L::Doubles::splat(0.37), L::Doubles::from_ints(whole));
+            let few = L::Ints::splat(3).min(places.max(whole));
+            let few = few.max(L::Ints::splat(0));
+            let more = [
+                L::from_doubles(d - e),
+                L::from_doubles(d.floor() + e),
+                L::from_doubles(d.min(e)),
+                L::from_doubles(d.max(e)),
+                L::from_doubles(L::Doubles::select(d.lt(e), d * e, e)),
+                L::from_doubles(L::Doubles::select(d.le(e).and_not(less), d, e)),
+                L::from_ints(d.to_ints()),
+                L::from_ints(few.times(whole)),
+                L::from_ints(whole.without_low_bits(few)),
+                L::from_ints(few.power_of_two()),
+                L::from_ints(whole.shifted::<2>()),
+                L::from_ints(L::Ints::bytes(&bytes, places)),
+            ];
             let mut lanes = vec![0.0; L::LANES];
-            for (k, v) in found.into_iter().chain([first, second, third, fourth]).enumerate() {
+            for (k, v) in found.into_iter().chain([first, second, third, fourth]).chain(more).enumerate() {
                 v.store(&mut lanes);
                 out[k].extend(lanes.iter().map(|v| v.to_bits()));
             }
@@ -92,24 +110,27 @@ fn every_level_computes_the_same_bits() {
 struct Below(f32);
 
 impl Kernel for Below {
-    type Output = (Vec<f32>, Vec<i32>);
+    type Output = (Vec<f32>, Vec<i32>, Vec<f64>);
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
         let all = numbers(512, 9);
-        let (mut kept, mut from) = (Vec::new(), Vec::new());
-        let (mut lanes, mut ints) = (vec![0.0; L::LANES], vec![0; L::LANES]);
+        let (mut kept, mut from, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut lanes, mut ints, mut doubles) = (vec![0.0; L::LANES], vec![0; L::LANES], vec![0.0; L::LANES]);
         for at in (0..512).step_by(L::LANES) {
             let x = L::load(&all[at..]);
             let mask = x.lt(L::from_f64(f64::from(self.0)));
             let count = mask.bits().count_ones() as usize;
             x.compress(mask).store(&mut lanes);
-            (L::Ints::count() + L::Ints::splat(at as i32)).compress(mask).store(&mut ints);
+            let place = L::Ints::count() + L::Ints::splat(at as i32);
+            place.compress(mask).store(&mut ints);
+            L::Doubles::from_ints(place).compress(mask).store(&mut doubles);
+            places.extend(&doubles[..count]);
             kept.extend(&lanes[..count]);
             from.extend(&ints[..count]);
             assert_eq!(mask.any(), count > 0);
         }
-        (kept, from)
+        (kept, from, places)
     }
 }
 
@@ -120,7 +141,8 @@ fn compression_keeps_what_is_chosen_in_order() {
         let from: Vec<i32> = (0..512).filter(|&i| all[i as usize] < bound).collect();
         let kept: Vec<f32> = from.iter().map(|&i| all[i as usize]).collect();
         for level in Level::ALL {
-            assert_eq!(level.run(Below(bound)), (kept.clone(), from.clone()), "{level}, below {bound}");
+            let places = from.iter().map(|&i| f64::from(i)).collect();
+            assert_eq!(level.run(Below(bound)), (kept.clone(), from.clone(), places), "{level}, below {bound}");
         }
     }
 }

@@ -1,13 +1,12 @@
 //! Rays in flight: what reaches the eye so far, and what cells add to it.
 
 use super::queue::{Passed, Results};
-use super::walk::Walk;
+use super::walk::Walks;
 use crate::integrate::exact::ray::{Front, Traced};
 
 /// A ray in flight.
 #[derive(Debug)]
 pub(super) struct InFlight {
-    pub(super) walk: Walk,
     pub(super) light: Front,
     /// Which of the rays asked for.
     pub(super) number: usize,
@@ -21,30 +20,36 @@ pub(super) struct InFlight {
 pub(super) fn composite(
     passed: &Passed,
     results: &Results,
+    walks: &Walks,
     rays: &mut [Option<InFlight>],
     rest: impl Fn(f64, f64) -> f64,
-    mut again: impl FnMut(&Walk, &mut Front, usize),
+    mut again: impl FnMut(usize, &mut Front, [i32; 3]),
 ) {
     for slot in 0..passed.count {
         if results.pieces[slot] == 0.0 {
             continue;
         }
-        let Some(ray) = &mut rays[usize::from(passed.ray[slot])] else { continue };
+        let seat = passed.seat[slot] as usize;
+        let Some(ray) = &mut rays[seat] else { continue };
         if ray.traced.is_some() {
             continue;
         }
-        let exit_mm = passed.span_mm[slot][1];
-        let radiance = [0, 1, 2].map(|c: usize| results.radiance[c][slot]);
+        let (exit_mm, length_mm) = (f64::from(passed.exit_mm[slot]), walks.length_mm(seat));
+        let [r, g, b] = &results.radiance;
         let (absorbed, error) = (results.absorbed[slot], results.error[slot]);
-        let fraction = ray.walk.fraction(exit_mm);
-        if !ray.light.take(radiance, absorbed, error, fraction, results.pieces[slot] as u64) {
-            again(&ray.walk, &mut ray.light, slot);
+        let pieces = results.pieces[slot] as u64;
+        if !ray.light.take([r[slot], g[slot], b[slot]], absorbed, error, exit_mm / length_mm, pieces) {
+            let [i, j, k] = &passed.cell;
+            again(seat, &mut ray.light, [i[slot], j[slot], k[slot]]);
         }
-        let rest = rest(ray.light.transmittance(), ray.walk.exit_mm() - exit_mm);
+        let rest = rest(ray.light.transmittance(), length_mm - exit_mm);
         ray.traced = ray.light.may_end(rest).then(|| ray.light.ended(rest));
     }
-    for ray in rays.iter_mut().flatten() {
-        if ray.traced.is_none() && ray.walk.is_over() {
+    for (seat, ray) in rays.iter_mut().enumerate() {
+        if let Some(ray) = ray
+            && ray.traced.is_none()
+            && walks.is_over(seat)
+        {
             ray.traced = Some(ray.light.ended(0.0));
         }
     }

@@ -33,18 +33,12 @@ use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
 use front::{InFlight, composite};
 use look::look;
-use queue::{CELLS, Passed, Results, Shown};
-use walk::Walk;
+use queue::{Passed, Results, Shown};
+use walk::{RAYS, Walks};
 
 pub(super) use function::{Function, OfValue, OfValueAndMagnitude};
 pub(super) use look::{Fields, Read};
 pub(super) use voxels::Voxels;
-
-/// Rays in flight at a time.
-const RAYS: usize = 16;
-
-/// Cells that a ray writes down in a round.
-const CELLS_PER_RAY: usize = CELLS / RAYS;
 
 /// The fast kernel for one transfer function of `F` fields.
 pub(super) struct Stream<'a, V, T, D, const F: usize> {
@@ -105,8 +99,7 @@ where
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Rounds { stream, rays, traced, splits } = self;
-        let [nx, ny, _] = stream.voxels.dims();
-        let strides = [nx as i32, (nx * ny) as i32];
+        let mut walks = Walks::new(stream.voxels.dims());
         let mut passed = Passed::new();
         let (mut whole, mut cut) = (Shown::<F>::new(), Shown::<F>::new());
         let mut results = Results::new();
@@ -114,24 +107,23 @@ where
         let mut waiting = rays.iter().enumerate();
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         loop {
-            for seat in &mut flying {
-                if let Some(ended) = seat.take_if(|ray| ray.traced.is_some()) {
+            for (seat, ray) in flying.iter_mut().enumerate() {
+                if let Some(ended) = ray.take_if(|ray| ray.traced.is_some()) {
                     traced[ended.number] = ended.traced;
+                    walks.leave(seat);
                 }
-                while seat.is_none() {
-                    let Some((number, ray)) = waiting.next() else { break };
-                    *seat = stream.entering(ray, number);
+                while ray.is_none() {
+                    let Some((number, next)) = waiting.next() else { break };
+                    if let Some(chord) = stream.chord(next) {
+                        walks.enter(seat, &chord);
+                        *ray = Some(InFlight { light: Front::new(stream.frame.tolerance), number, traced: None });
+                    }
                 }
             }
             if flying.iter().all(Option::is_none) {
                 return;
             }
-            passed.count = 0;
-            for (seat, ray) in flying.iter_mut().enumerate() {
-                if let Some(ray) = ray {
-                    ray.walk.pass(&stream.occupancy, seat as u8, CELLS_PER_RAY, strides, &mut passed);
-                }
-            }
+            walks.pass::<L>(&stream.occupancy, &mut passed);
             results.clear(passed.count);
             look::<L, V, F>(&passed, &stream.voxels, &stream.function, &mut whole, &mut cut);
             pieces::whole::<L, F>(&whole, &stream.function, &mut results);
@@ -139,10 +131,11 @@ where
             composite(
                 &passed,
                 &results,
+                &walks,
                 &mut flying,
                 #[inline(always)]
                 |transmittance, rest_mm| stream.frame.of_rest(transmittance, rest_mm),
-                |walk, light, slot| stream.again(walk, light, &passed, slot, splits),
+                |seat, light, cell| stream.again(&walks, seat, cell, light, splits),
             );
         }
     }
@@ -152,24 +145,19 @@ impl<V, T, D, const F: usize> Stream<'_, V, T, D, F>
 where
     D: Medium<f64>,
 {
-    /// A ray where it enters the volume; `None` if it misses it.
-    fn entering(&self, ray: &Ray, number: usize) -> Option<InFlight>
-    where
-        V: Voxel + Pairs,
-    {
+    /// The part of a ray inside the volume; `None` if there is none.
+    fn chord(&self, ray: &Ray) -> Option<Chord> {
         let mut chord = Chord::new(self.grid, self.clip, *ray)?;
         let (low, high) = self.grid.index_bounds();
         chord.entry_index = chord.entry_index.clamp(low, high);
-        let walk = Walk::new(&chord, self.voxels.dims());
-        Some(InFlight { walk, light: Front::new(self.frame.tolerance), number, traced: None })
+        Some(chord)
     }
 
     /// Integrates a cell with its twin.
     #[inline(never)]
-    fn again(&self, walk: &Walk, light: &mut Front, passed: &Passed, slot: usize, splits: &mut Splits<f64>) {
-        let cell = [0, 1, 2].map(|a: usize| passed.cell[a][slot]);
-        let segment = walk.segment(cell, passed.span_mm[slot]);
-        let fraction = |at_mm: f64| walk.fraction(at_mm);
+    fn again(&self, walks: &Walks, seat: usize, cell: [i32; 3], light: &mut Front, splits: &mut Splits<f64>) {
+        let segment = walks.segment(seat, cell);
+        let fraction = |at_mm: f64| walks.fraction(seat, at_mm);
         self.frame.pass(&segment, fraction, &self.double, &Unlit, splits, light);
     }
 }

@@ -19,10 +19,10 @@ pub(super) struct Passed {
     pub(super) to: [[f32; ROOM]; 3],
     /// Length, mm.
     pub(super) length_mm: [f32; ROOM],
-    /// Which ray of the round.
-    pub(super) ray: [u8; ROOM],
-    /// Where the ray enters and leaves the cell, mm from the ray's origin.
-    pub(super) span_mm: [[f64; 2]; ROOM],
+    /// Which ray, by its seat.
+    pub(super) seat: [i32; ROOM],
+    /// Where the ray leaves the cell, mm from where it entered the volume.
+    pub(super) exit_mm: [f32; ROOM],
 }
 
 impl Passed {
@@ -34,8 +34,8 @@ impl Passed {
             from: [[0.0; ROOM]; 3],
             to: [[0.0; ROOM]; 3],
             length_mm: [0.0; ROOM],
-            ray: [0; ROOM],
-            span_mm: [[0.0; 2]; ROOM],
+            seat: [0; ROOM],
+            exit_mm: [0.0; ROOM],
         }
     }
 }
