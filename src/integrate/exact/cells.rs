@@ -8,6 +8,7 @@
 use glam::DVec3;
 
 use crate::field::Chord;
+use crate::math::each;
 use crate::scene::{Clip, Ray, Scene};
 use crate::volume::{Grid, Slices, Volume};
 
@@ -110,7 +111,7 @@ impl IndexRay {
     fn segments(self, dims: [usize; 3], slices: Option<&[f64]>) -> Segments<'_> {
         let last_cell = dims.map(|n| n.saturating_sub(2));
         let mut cell = [0; 3];
-        let mut next_mm = [f64::INFINITY; 3];
+        let next_mm = [f64::INFINITY; 3];
         for axis in 0..3 {
             let p = self.chord.entry_index[axis];
             // On a face, the cell that the ray is about to pass.
@@ -124,11 +125,11 @@ impl IndexRay {
             };
         }
         let (at_mm, exit_mm) = (self.enter_mm(), self.exit_mm());
-        let mut segments = Segments { ray: self, last_cell, dims, slices, cell, next_mm, at_mm, exit_mm };
-        for (axis, next) in next_mm.iter_mut().enumerate() {
-            *next = segments.crossing_mm(axis);
+        let faces = [[0.0; 2]; 3];
+        let mut segments = Segments { ray: self, last_cell, dims, slices, cell, faces, next_mm, at_mm, exit_mm };
+        for axis in 0..3 {
+            segments.enter(axis);
         }
-        segments.next_mm = next_mm;
         segments
     }
 }
@@ -142,6 +143,9 @@ pub(super) struct Segments<'a> {
     /// Places of slices at uneven distances.
     slices: Option<&'a [f64]>,
     cell: [usize; 3],
+    /// Where the cell's lower and upper face across each axis lie, as continuous indices: known from the step before, so that
+    /// even slices pay one test a cell for those that are not.
+    faces: [[f64; 2]; 3],
     /// Where the ray crosses the next face across each axis, mm from its origin.
     next_mm: [f64; 3],
     at_mm: f64,
@@ -149,34 +153,35 @@ pub(super) struct Segments<'a> {
 }
 
 impl Segments<'_> {
-    fn crossing_mm(&self, axis: usize) -> f64 {
-        let d = self.ray.chord.index_per_mm[axis];
+    /// Looks up the faces of a cell that the ray has come to along an axis, and where it leaves through one of them.
+    #[inline(always)]
+    fn enter(&mut self, axis: usize) {
         let c = self.cell[axis];
-        let leaves_domain = if d < 0.0 { c == 0 } else { c >= self.last_cell[axis] };
-        if d == 0.0 || leaves_domain || self.dims[axis] == 1 {
-            return f64::INFINITY;
-        }
-        let face = self.face(axis, if d < 0.0 { c } else { c + 1 });
-        self.ray.enter_mm() + (face - self.ray.chord.entry_index[axis]) / d
+        self.faces[axis] = match self.slices {
+            Some(places) if axis == 2 && c + 1 < places.len() => [places[c], places[c + 1]],
+            _ => [c as f64, c as f64 + 1.0],
+        };
+        let d = self.ray.chord.index_per_mm[axis];
+        let falls = d < 0.0;
+        let leaves_domain = if falls { c == 0 } else { c >= self.last_cell[axis] };
+        self.next_mm[axis] = if d == 0.0 || leaves_domain || self.dims[axis] == 1 {
+            f64::INFINITY
+        } else {
+            let [low, high] = self.faces[axis];
+            let face = if falls { low } else { high };
+            self.ray.enter_mm() + (face - self.ray.chord.entry_index[axis]) / d
+        };
     }
 
+    #[inline(always)]
     fn local(&self, mm: f64) -> [f64; 3] {
         let p = self.ray.chord.index_at(mm - self.ray.enter_mm());
-        std::array::from_fn(|axis| {
-            let (corner, low) = (self.cell[axis], self.face(axis, self.cell[axis]));
-            match self.slices {
-                Some(places) if axis == 2 => ((p[axis] - low) / (places[corner + 1] - low)).clamp(0.0, 1.0),
-                _ => (p[axis] - low).clamp(0.0, 1.0),
-            }
-        })
-    }
-
-    /// Where a face across an axis lies, as a continuous index.
-    fn face(&self, axis: usize, number: usize) -> f64 {
-        match self.slices {
-            Some(places) if axis == 2 => places[number],
-            _ => number as f64,
+        let mut local: [f64; 3] = each(|axis| p[axis] - self.faces[axis][0]);
+        if self.slices.is_some() {
+            let [low, high] = self.faces[2];
+            local[2] /= high - low;
         }
+        each(|axis| local[axis].clamp(0.0, 1.0))
     }
 }
 
@@ -209,7 +214,7 @@ impl Iterator for Segments<'_> {
                 } else {
                     self.cell[axis] += 1;
                 }
-                self.next_mm[axis] = self.crossing_mm(axis);
+                self.enter(axis);
             }
             if segment.is_some() {
                 return segment;
