@@ -6,8 +6,8 @@ use crate::volume::Grid;
 
 use super::Method;
 
-/// Rays that are looked at, at most: enough for an estimate, and nothing beside the work of any picture.
-const MOST_PROBES: usize = 1024;
+/// Rays that are looked at, at most: as many as decide two digits.
+const MOST_PROBES: usize = 16_384;
 
 /// Rays, and what they pass: an estimate by every so many pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

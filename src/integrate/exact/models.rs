@@ -111,7 +111,7 @@ pub(super) fn show_surfaces<V: Voxel>(
     let segments = shown.domain.segments(inside);
     let sign = rescale.slope.signum();
     match shown.hiding {
-        None => crossings(lattice, segments.map(Passed::Shown), sign, &levels, composite),
+        None => crossings(lattice, segments, sign, &levels, composite),
         Some(hiding) => crossings(lattice, hiding.pass(segments), sign, &levels, composite),
     }
     traced
