@@ -67,17 +67,21 @@ fn fill_row<V: Voxel, K: Spacing>(
     let per_j = Even.per_step(j0, j1);
     let per_k = field.spacing.per_step(k0, k1);
     let (here, front, back, below, above) = (line(j, k), line(j0, k), line(j1, k), line(j, k0), line(j, k1));
-    let length = |x: f32, i: usize| {
-        let [gx, gy, gz] = units.per_mm([x, back[i].minus(front[i]) * per_j, above[i].minus(below[i]) * per_k]);
-        (gx * gx + gy * gy + gz * gz).sqrt()
-    };
+    let across = |i: usize| [back[i].minus(front[i]) * per_j, above[i].minus(below[i]) * per_k];
     for end in [0, nx - 1] {
         let (i0, i1) = neighbours(end, nx);
-        row[end] = length(here[i1].minus(here[i0]) * Even.per_step(i0, i1), end);
+        row[end] = length_per_mm(units, here[i1].minus(here[i0]) * Even.per_step(i0, i1), across(end));
     }
     for i in 1..nx.max(2) - 1 {
-        row[i] = length(0.5 * here[i + 1].minus(here[i - 1]), i);
+        row[i] = length_per_mm(units, 0.5 * here[i + 1].minus(here[i - 1]), across(i));
     }
+}
+
+/// The length of a gradient of stored units per index step, HU/mm. Inline, or the loop over a row is not vectorised.
+#[inline(always)]
+fn length_per_mm(units: &GradientUnits, along_i: f32, [along_j, along_k]: [f32; 2]) -> f32 {
+    let [gx, gy, gz] = units.per_mm([along_i, along_j, along_k]);
+    (gx * gx + gy * gy + gz * gz).sqrt()
 }
 
 /// The neighbours of a voxel along an axis of `n`; on the border the voxel itself is one of them.

@@ -18,7 +18,7 @@ pub fn explain(plan: &Plan) -> String {
     }
     let (when, most) = plan.peak();
     line(&mut text, "memory", &format!("{} at peak, while {when}", bytes(most)));
-    line(&mut text, "work", &plan.work.describe());
+    line(&mut text, "work", &plan.work().describe());
     if let Some(chosen) = &plan.chosen {
         line(&mut text, "chosen", &chosen.because);
     }
@@ -157,7 +157,7 @@ pub fn explain_json(plan: &Plan) -> Value {
         "stages": plan.stages,
         "memory_bytes": plan.memory_bytes(),
         "memory_peak_while": plan.peak().0,
-        "work": plan.work,
+        "work": plan.work(),
         "colors": plan.colors.map(|RgbaEncoding { opacity_length_mm, color }| json!({
             "opacity_length_mm": opacity_length_mm,
             "encoding": match color {

@@ -50,7 +50,7 @@ use crate::error::Result;
 use crate::scene::{Effects, Scene, Shading};
 use crate::spec::Spec;
 use crate::transfer::TransferFunction;
-use crate::volume::RgbaEncoding;
+use crate::volume::{Grid, RgbaEncoding};
 
 /// What will be done, for one volume; the same for any number of threads.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,8 +75,8 @@ pub struct Plan {
     pub certify: Option<usize>,
     /// Most bytes held while the scan was read.
     pub reading_bytes: u64,
-    /// How much there is to do.
-    pub work: Work,
+    /// The lattice of the volume.
+    pub grid: Grid,
     /// What is computed, in order.
     pub stages: Vec<Stage>,
     /// What is not computed, and why.
@@ -160,12 +160,11 @@ impl Plan {
             output,
             certify: spec.pipeline.certify.map(|pixels| pixels as usize),
             reading_bytes: volume.reading_bytes,
-            work: Work { rays: 0, cells: 0, samples: None },
+            grid: volume.grid,
             stages: Vec::new(),
             not_computed: Vec::new(),
             warnings: Vec::new(),
         };
-        plan.work = work::expected(&plan.scene, &plan.method, &volume.grid);
         plan.stages = stages::computed(&plan, volume);
         plan.not_computed = stages::not_computed(&plan, spec, volume);
         plan.not_computed.extend(omitted);
@@ -181,6 +180,11 @@ impl Plan {
             (Method::Exact(exact), _) => Some(exact.tolerance),
             (Method::March(_) | Method::Reference, _) => None,
         }
+    }
+
+    /// How much there is to do, by looking at thousands of rays: for those who ask, as rendering does not.
+    pub fn work(&self) -> Work {
+        work::expected(&self.scene, &self.method, &self.grid)
     }
 
     /// Bytes on the heap at peak, estimated; the program and its threads' stacks take some 10 MB beside it.

@@ -20,14 +20,14 @@ impl Volume {
         let mut bytes = Vec::with_capacity(CHUNK_VALUES * size_of::<f32>());
         for start in (0..self.samples.len()).step_by(CHUNK_VALUES) {
             bytes.clear();
-            for index in start..self.samples.len().min(start + CHUNK_VALUES) {
-                let mut add = |value: f32| bytes.extend(value.to_le_bytes());
-                match &self.samples {
-                    Samples::Rgba8(data) => data[index].map(f32::from).into_iter().for_each(&mut add),
-                    Samples::Rgba16(data) => data[index].map(f32::from).into_iter().for_each(&mut add),
-                    // Adding 0 makes one zero of the two, so that integers and floats agree.
-                    _ => add(self.rescale.value(self.samples.stored(index)) as f32 + 0.0),
-                }
+            let chunk = start..self.samples.len().min(start + CHUNK_VALUES);
+            let mut add = |value: f32| bytes.extend(value.to_le_bytes());
+            match &self.samples {
+                Samples::Rgba8(data) => data[chunk].as_flattened().iter().for_each(|&c| add(f32::from(c))),
+                Samples::Rgba16(data) => data[chunk].as_flattened().iter().for_each(|&c| add(f32::from(c))),
+                // Adding 0 makes one zero of the two, so that integers and floats agree.
+                Samples::I16(data) => data[chunk].iter().for_each(|&v| add(self.rescale.value(v.into()) as f32 + 0.0)),
+                Samples::F32(data) => data[chunk].iter().for_each(|&v| add(self.rescale.value(v.into()) as f32 + 0.0)),
             }
             hash.update(&bytes);
         }

@@ -40,7 +40,7 @@ fn every_example_says_what_it_does_not_compute_and_why() {
         for omission in &plan.not_computed {
             assert!(omission.why.len() > 10, "{name}: {} is not computed, and why is not said", omission.what);
         }
-        assert!(plan.memory_bytes() >= plan.volume_bytes() && plan.work.rays > 0, "{name}: {:?}", plan.work);
+        assert!(plan.memory_bytes() >= plan.volume_bytes() && plan.work().rays > 0, "{name}: {:?}", plan.work());
         insta::assert_snapshot!(name.clone(), explain(&plan));
     }
 }

@@ -8,6 +8,7 @@
 use glam::DVec3;
 
 use crate::field::Chord;
+use crate::math::each;
 use crate::scene::{Clip, Ray, Scene};
 use crate::volume::{Grid, Slices, Volume};
 
@@ -108,40 +109,65 @@ impl IndexRay {
     /// The cells of the ray in a lattice of `dims` voxels, front to back; without gaps or overlaps, none of length 0.
     /// `slices` are the places of slices at uneven distances.
     fn segments(self, dims: [usize; 3], slices: Option<&[f64]>) -> Segments<'_> {
+        let (entry, per_mm) = (self.chord.entry_index.to_array(), self.chord.index_per_mm.to_array());
         let last_cell = dims.map(|n| n.saturating_sub(2));
-        let mut cell = [0; 3];
-        let mut next_mm = [f64::INFINITY; 3];
-        for axis in 0..3 {
-            let p = self.chord.entry_index[axis];
-            // On a face, the cell that the ray is about to pass.
-            let falls = self.chord.index_per_mm[axis] < 0.0;
-            cell[axis] = match slices {
+        let falls = per_mm.map(|d| d < 0.0);
+        // On a face, the cell that the ray is about to pass.
+        let cell = each(|axis| {
+            let p = entry[axis];
+            match slices {
                 Some(places) if axis == 2 => {
-                    let passed = places.partition_point(|&face| if falls { face < p } else { face <= p });
+                    let passed = places.partition_point(|&face| if falls[axis] { face < p } else { face <= p });
                     passed.saturating_sub(1).min(last_cell[axis])
                 }
-                _ => (if falls { p.ceil() - 1.0 } else { p.floor() }).clamp(0.0, last_cell[axis] as f64) as usize,
-            };
+                _ => (if falls[axis] { p.ceil() - 1.0 } else { p.floor() }).clamp(0.0, last_cell[axis] as f64) as usize,
+            }
+        });
+        let mut segments = Segments {
+            entry,
+            per_mm,
+            enter_mm: self.enter_mm(),
+            slices,
+            cell,
+            low: each(|axis| match slices {
+                Some(places) if axis == 2 => places[cell[axis]],
+                _ => cell[axis] as f64,
+            }),
+            step: falls.map(|falls| if falls { -1 } else { 1 }),
+            ahead: falls.map(|falls| if falls { 0.0 } else { 1.0 }),
+            last: each(|axis| if falls[axis] { 0 } else { last_cell[axis] }),
+            next_mm: [f64::INFINITY; 3],
+            at_mm: self.enter_mm(),
+            exit_mm: self.exit_mm(),
+        };
+        for axis in (0..3).filter(|&axis| per_mm[axis] != 0.0 && dims[axis] > 1) {
+            segments.enter(axis, cell[axis]);
         }
-        let (at_mm, exit_mm) = (self.enter_mm(), self.exit_mm());
-        let mut segments = Segments { ray: self, last_cell, dims, slices, cell, next_mm, at_mm, exit_mm };
-        for (axis, next) in next_mm.iter_mut().enumerate() {
-            *next = segments.crossing_mm(axis);
-        }
-        segments.next_mm = next_mm;
         segments
     }
 }
 
-/// Iterator over the [`Segment`]s of a ray.
+/// Iterator over the [`Segment`]s of a ray. What stays the same along the ray, or follows from the cell before, is not
+/// computed anew for each cell: a ray passes hundreds, and in most of them nothing is seen.
 #[derive(Debug, Clone)]
 pub(super) struct Segments<'a> {
-    ray: IndexRay,
-    last_cell: [usize; 3],
-    dims: [usize; 3],
+    /// Where the ray enters the domain, as a continuous index.
+    entry: [f64; 3],
+    /// Its direction, voxels per mm.
+    per_mm: [f64; 3],
+    /// Where it enters, mm from its origin.
+    enter_mm: f64,
     /// Places of slices at uneven distances.
     slices: Option<&'a [f64]>,
     cell: [usize; 3],
+    /// Where the cell's lower corner lies, as a continuous index.
+    low: [f64; 3],
+    /// From a cell to the next along each axis: 1, or -1.
+    step: [isize; 3],
+    /// From a cell's number along each axis to that of the face that the ray leaves it through: 1, or 0.
+    ahead: [f64; 3],
+    /// The last cell that the ray comes to along each axis.
+    last: [usize; 3],
     /// Where the ray crosses the next face across each axis, mm from its origin.
     next_mm: [f64; 3],
     at_mm: f64,
@@ -149,41 +175,49 @@ pub(super) struct Segments<'a> {
 }
 
 impl Segments<'_> {
-    fn crossing_mm(&self, axis: usize) -> f64 {
-        let d = self.ray.chord.index_per_mm[axis];
-        let c = self.cell[axis];
-        let leaves_domain = if d < 0.0 { c == 0 } else { c >= self.last_cell[axis] };
-        if d == 0.0 || leaves_domain || self.dims[axis] == 1 {
-            return f64::INFINITY;
+    /// Comes to a cell along an axis that the ray moves on: where its lower face lies, and where the ray leaves it.
+    #[inline(always)]
+    fn enter(&mut self, axis: usize, cell: usize) {
+        self.cell[axis] = cell;
+        // Signed numbers become floating-point ones in one instruction, unsigned ones in five.
+        let mut low = cell as i64 as f64;
+        let mut face = low + self.ahead[axis];
+        if let (2, Some(places)) = (axis, self.slices) {
+            low = places[cell];
+            face = places[cell + self.ahead[2] as usize];
         }
-        let face = self.face(axis, if d < 0.0 { c } else { c + 1 });
-        self.ray.enter_mm() + (face - self.ray.chord.entry_index[axis]) / d
+        self.low[axis] = low;
+        self.next_mm[axis] = if cell == self.last[axis] {
+            f64::INFINITY
+        } else {
+            self.enter_mm + (face - self.entry[axis]) / self.per_mm[axis]
+        };
     }
 
-    fn local(&self, mm: f64) -> [f64; 3] {
-        let p = self.ray.chord.index_at(mm - self.ray.enter_mm());
-        std::array::from_fn(|axis| {
-            let (corner, low) = (self.cell[axis], self.face(axis, self.cell[axis]));
-            match self.slices {
-                Some(places) if axis == 2 => ((p[axis] - low) / (places[corner + 1] - low)).clamp(0.0, 1.0),
-                _ => (p[axis] - low).clamp(0.0, 1.0),
-            }
-        })
-    }
-
-    /// Where a face across an axis lies, as a continuous index.
-    fn face(&self, axis: usize, number: usize) -> f64 {
-        match self.slices {
-            Some(places) if axis == 2 => places[number],
-            _ => number as f64,
+    /// The part inside the cell, up to a distance from the ray's origin.
+    #[inline(always)]
+    fn up_to(&self, exit_mm: f64) -> Segment {
+        let inside = |mm: f64| {
+            let mm = mm - self.enter_mm;
+            each(|axis| self.entry[axis] + mm * self.per_mm[axis] - self.low[axis])
+        };
+        let (mut from, mut to): ([f64; 3], [f64; 3]) = (inside(self.at_mm), inside(exit_mm));
+        if let Some(places) = self.slices {
+            let height = places[self.cell[2] + 1] - self.low[2];
+            from[2] /= height;
+            to[2] /= height;
         }
+        // Rounding may leave a trace outside.
+        let clamped = |local: [f64; 3]| each(|axis| local[axis].clamp(0.0, 1.0));
+        let (from, to) = (clamped(from), clamped(to));
+        Segment { cell: self.cell, from, to, length_mm: exit_mm - self.at_mm, exit_mm }
     }
 }
 
 impl Iterator for Segments<'_> {
     type Item = Segment;
 
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> Option<Segment> {
         while self.at_mm < self.exit_mm {
             let [a, b, c] = self.next_mm;
@@ -194,24 +228,14 @@ impl Iterator for Segments<'_> {
             } else {
                 2
             };
-            let exit_mm = self.next_mm[axis].min(self.exit_mm);
-            let segment = (exit_mm > self.at_mm).then(|| Segment {
-                cell: self.cell,
-                from: self.local(self.at_mm),
-                to: self.local(exit_mm),
-                length_mm: exit_mm - self.at_mm,
-                exit_mm,
-            });
-            self.at_mm = exit_mm.max(self.at_mm);
-            if self.next_mm[axis] < self.exit_mm {
-                if self.ray.chord.index_per_mm[axis] < 0.0 {
-                    self.cell[axis] -= 1;
-                } else {
-                    self.cell[axis] += 1;
-                }
-                self.next_mm[axis] = self.crossing_mm(axis);
+            let crosses = self.next_mm[axis] < self.exit_mm;
+            let exit_mm = if crosses { self.next_mm[axis] } else { self.exit_mm };
+            let segment = (exit_mm > self.at_mm).then(|| self.up_to(exit_mm));
+            if crosses {
+                self.enter(axis, self.cell[axis].wrapping_add_signed(self.step[axis]));
             }
             if segment.is_some() {
+                self.at_mm = exit_mm;
                 return segment;
             }
         }

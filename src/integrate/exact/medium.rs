@@ -60,7 +60,8 @@ impl<R: Real, V: Voxel> Medium<R> for Classified<'_, V, OneD<R>> {
 
     #[inline(always)]
     fn gradient(&self, _: &Cubic<R>, segment: &Segment) -> [Cubic<R>; 3] {
-        self.lattice.gradients(segment.cell).map(|c| along(&c, segment))
+        let corners = self.lattice.gradients(segment.cell);
+        each(|axis| along(&corners[axis], segment))
     }
 
     #[inline(always)]
@@ -117,7 +118,7 @@ impl<R: Real, V: Voxel> Medium<R> for Classified<'_, V, TwoD<R>> {
 
     #[inline(always)]
     fn gradient(&self, fields: &ValueAndMagnitude<R>, segment: &Segment) -> [Cubic<R>; 3] {
-        fields.gradients.map(|c| along(&c, segment))
+        each(|axis| along(&fields.gradients[axis], segment))
     }
 
     #[inline(always)]

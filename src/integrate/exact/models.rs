@@ -92,8 +92,10 @@ pub(super) fn show_surfaces<V: Voxel>(
     scene: &Scene,
     ray: &Ray,
 ) -> Traced {
+    let nothing = Traced { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, bound: ROUNDING, pieces: 0 };
+    let Some(inside) = shown.domain.inside(ray) else { return nothing };
     let levels: Vec<f64> = surfaces.iter().map(|s| rescale.stored(s.value)).collect();
-    let mut traced = Traced { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, bound: ROUNDING, pieces: 0 };
+    let mut traced = nothing;
     let composite = |crossing: Crossing| {
         let Surface { opacity, color, .. } = surfaces[crossing.level];
         // Between surfaces nothing absorbs, so that they cast no shadows.
@@ -106,10 +108,10 @@ pub(super) fn show_surfaces<V: Voxel>(
         traced.pieces += 1;
         traced.transmittance > 0.0
     };
-    let segments = shown.domain.inside(ray).into_iter().flat_map(|inside| shown.domain.segments(inside));
+    let segments = shown.domain.segments(inside);
     let sign = rescale.slope.signum();
     match shown.hiding {
-        None => crossings(lattice, segments.map(Passed::Shown), sign, &levels, composite),
+        None => crossings(lattice, segments, sign, &levels, composite),
         Some(hiding) => crossings(lattice, hiding.pass(segments), sign, &levels, composite),
     }
     traced

@@ -271,6 +271,7 @@ struct Variation<R> {
 }
 
 impl<R: Real> Variation<R> {
+    #[inline(always)]
     fn of(g: &[Cubic<R>; 3], soft_square: R) -> Self {
         let number = R::from_f64;
         let at = |k: usize| [g[0][k], g[1][k], g[2][k]];

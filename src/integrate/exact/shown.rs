@@ -30,6 +30,14 @@ pub(super) enum Passed {
     Hidden,
 }
 
+/// Where nothing is hidden.
+impl From<Segment> for Passed {
+    #[inline(always)]
+    fn from(segment: Segment) -> Self {
+        Passed::Shown(segment)
+    }
+}
+
 impl Passed {
     /// The segment, if its values count.
     pub(super) fn shown(self) -> Option<Segment> {

@@ -72,9 +72,9 @@ pub(super) struct Crossing {
 /// The state is carried along the ray, so that a crossing on the face between two cells counts once. A ray that begins or
 /// ends inside a level, at the border of the volume or where it is clipped, has no crossing there, nor has one that enters
 /// or leaves what is hidden. `sign` is -1 where values fall as stored numbers rise.
-pub(super) fn crossings<V: Voxel>(
+pub(super) fn crossings<V: Voxel, P: Into<Passed>>(
     lattice: &Lattice<'_, V>,
-    passed: impl Iterator<Item = Passed>,
+    passed: impl Iterator<Item = P>,
     sign: f64,
     levels: &[f64],
     mut visit: impl FnMut(Crossing) -> bool,
@@ -83,7 +83,7 @@ pub(super) fn crossings<V: Voxel>(
     let mut inside: Vec<Option<bool>> = vec![None; levels.len()];
     let mut found: Vec<(f64, usize)> = Vec::new();
     for passed in passed {
-        let Passed::Shown(segment) = passed else {
+        let Passed::Shown(segment) = passed.into() else {
             inside.fill(None);
             continue;
         };
