@@ -197,8 +197,9 @@ impl<L: Lanes> Group<L> {
             group.mm_per[a] = L::Doubles::load(&walks.mm_per[a][first..]);
             let per_mm = L::Doubles::load(&walks.per_mm[a][first..]);
             group.per_mm[a] = per_mm;
-            group.falls[a] = per_mm.lt(zero);
-            group.moves[a] = group.falls[a].or(zero.lt(per_mm));
+            let falls: L::Mask = per_mm.lt(zero);
+            group.falls[a] = falls;
+            group.moves[a] = falls.or(zero.lt(per_mm));
             group.cell[a] = L::Ints::load(&walks.cell[a][first..]);
             group.next_mm[a] = L::Doubles::load(&walks.next_mm[a][first..]);
             group.last_cell[a] = L::Ints::splat(walks.last_cell[a]);
