@@ -4,40 +4,43 @@ use rayon::prelude::*;
 
 use super::{Spacing, Trilinear, Voxel};
 
-/// Base-2 logarithm of the cells per axis of a block.
+/// Base-2 logarithm of the cells per axis of a block of [`Macrocells`].
 pub(super) const LOG2_BLOCK_CELLS: u32 = 3;
 
-/// Cells per axis of a block.
+/// Cells per axis of a block of [`Macrocells`].
 pub const BLOCK_CELLS: usize = 1 << LOG2_BLOCK_CELLS;
 
-/// Value ranges of blocks of 8³ cells, including the voxels on their upper faces: whatever is interpolated in a block lies
+/// Value ranges of blocks of `2^LOG2` cells per axis, including the voxels on their upper faces: whatever is interpolated in a block lies
 /// in its range.
 #[derive(Debug, Clone)]
-pub struct Macrocells {
+pub struct BlockRanges<const LOG2: u32> {
     blocks: [usize; 3],
     ranges: Vec<[f32; 2]>,
 }
 
-impl Macrocells {
-    /// Base-2 logarithm of [`BLOCK_CELLS`].
-    pub const LOG2_CELLS: u32 = LOG2_BLOCK_CELLS;
+/// Value ranges of blocks of 8³ cells.
+pub type Macrocells = BlockRanges<LOG2_BLOCK_CELLS>;
+
+impl<const LOG2: u32> BlockRanges<LOG2> {
+    /// Base-2 logarithm of the cells per axis of a block.
+    pub const LOG2_CELLS: u32 = LOG2;
 
     /// Number of blocks along each axis of a lattice of so many voxels.
     pub fn blocks_of(dims: [usize; 3]) -> [usize; 3] {
-        dims.map(|n| (n - 1).div_ceil(BLOCK_CELLS).max(1))
+        dims.map(|n| (n - 1).div_ceil(1 << LOG2).max(1))
     }
 
     /// The ranges of a channel, computed in parallel.
     pub fn new<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>) -> Self {
-        let blocks = Macrocells::blocks_of(field.dims);
+        let blocks = Self::blocks_of(field.dims);
         let [across, down, _] = blocks;
         let mut ranges = vec![[0.0; 2]; blocks.iter().product()];
         ranges.par_chunks_mut(across * down).enumerate().for_each(|(k, slab)| {
             for (j, row) in slab.chunks_mut(across).enumerate() {
-                fill_row(field, j, k, row);
+                fill_row::<V, K, LOG2>(field, j, k, row);
             }
         });
-        Macrocells { blocks, ranges }
+        BlockRanges { blocks, ranges }
     }
 
     /// Number of blocks along i, j and k.
@@ -52,18 +55,23 @@ impl Macrocells {
 }
 
 /// Voxels of a block along an axis of `n` voxels, its upper face included.
-fn voxels_of(block: usize, n: usize) -> std::ops::RangeInclusive<usize> {
-    let first = block * BLOCK_CELLS;
-    first..=(first + BLOCK_CELLS).min(n - 1)
+fn voxels_of<const LOG2: u32>(block: usize, n: usize) -> std::ops::RangeInclusive<usize> {
+    let first = block << LOG2;
+    first..=(first + (1 << LOG2)).min(n - 1)
 }
 
 /// Whole lines of voxels are reduced across the line first, which vectorises, and each block along the line last.
-fn fill_row<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>, j: usize, k: usize, row: &mut [[f32; 2]]) {
+fn fill_row<V: Voxel, K: Spacing, const LOG2: u32>(
+    field: &Trilinear<'_, V, K>,
+    j: usize,
+    k: usize,
+    row: &mut [[f32; 2]],
+) {
     let [nx, ny, nz] = field.dims;
-    let first = field.voxels[nx * (j * BLOCK_CELLS + ny * k * BLOCK_CELLS)..][..nx].to_vec();
+    let first = field.voxels[nx * ((j << LOG2) + ny * (k << LOG2))..][..nx].to_vec();
     let (mut low, mut high) = (first.clone(), first);
-    for z in voxels_of(k, nz) {
-        for y in voxels_of(j, ny) {
+    for z in voxels_of::<LOG2>(k, nz) {
+        for y in voxels_of::<LOG2>(j, ny) {
             let line = &field.voxels[nx * (y + ny * z)..][..nx];
             for ((&v, low), high) in line.iter().zip(&mut low).zip(&mut high) {
                 *low = if v < *low { v } else { *low };
@@ -72,7 +80,7 @@ fn fill_row<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>, j: usize, k: usiz
         }
     }
     for (i, range) in row.iter_mut().enumerate() {
-        let (low, high) = (&low[voxels_of(i, nx)], &high[voxels_of(i, nx)]);
+        let (low, high) = (&low[voxels_of::<LOG2>(i, nx)], &high[voxels_of::<LOG2>(i, nx)]);
         let least = low.iter().fold(low[0], |a, &b| if b < a { b } else { a });
         let most = high.iter().fold(high[0], |a, &b| if b > a { b } else { a });
         *range = [least.to_f32(), most.to_f32()];

@@ -28,7 +28,7 @@ mod voxel;
 pub use chord::Chord;
 pub use corners::Corners;
 pub use gradient::GradientUnits;
-pub use macrocell::{BLOCK_CELLS, Macrocells};
+pub use macrocell::{BLOCK_CELLS, BlockRanges, Macrocells};
 pub use magnitude::{gradient_magnitude_per_mm, gradient_magnitude_row, gradient_magnitudes, gradient_range_per_mm};
 pub use position::{Cell, Pace, Position, Step};
 pub use spacing::{Even, SliceTable, Spacing, Uneven};

@@ -1,7 +1,10 @@
 //! Where something may show: blocks of cells, and the empty neighbourhoods around the others.
 
-use crate::field::Macrocells;
+use crate::field::BlockRanges;
 use crate::simd::{Ints, Lanes, Mask};
+
+/// Base-2 logarithm of the cells per axis of a block.
+pub(super) const LOG2_BLOCK: u32 = 2;
 
 /// Base-2 logarithm of the cells per axis of the largest neighbourhood that is known to be empty.
 const LOG2_LARGEST: u32 = 7;
@@ -18,28 +21,27 @@ pub(super) struct Occupancy {
 impl Occupancy {
     /// Nothing is known to be empty.
     pub(super) fn full(dims: [usize; 3]) -> Self {
-        let blocks = Macrocells::blocks_of(dims);
+        let blocks = BlockRanges::<LOG2_BLOCK>::blocks_of(dims);
         Occupancy { blocks, empty: vec![0; blocks.iter().product::<usize>() + 3] }
     }
 
     /// The blocks whose range of stored values, with what rounding makes of interpolated ones, may show something.
-    pub(super) fn new(values: &Macrocells, may_show: impl Fn([f32; 2]) -> bool) -> Self {
+    pub(super) fn new(values: &BlockRanges<LOG2_BLOCK>, may_show: impl Fn([f32; 2]) -> bool) -> Self {
         let blocks = values.blocks();
         let is_empty = |range: &[f32; 2]| !may_show(super::empty_space::widened(*range));
-        let log2_block = Macrocells::LOG2_CELLS;
-        let known = values.ranges().iter().map(|range| if is_empty(range) { log2_block as u8 } else { 0 });
+        let known = values.ranges().iter().map(|range| if is_empty(range) { LOG2_BLOCK as u8 } else { 0 });
         let empty = known.chain([0; 3]).collect();
         let mut occupancy = Occupancy { blocks, empty };
-        for log2_cells in log2_block + 1..=LOG2_LARGEST {
-            occupancy.join(log2_cells - log2_block, log2_cells as u8);
+        for log2_cells in LOG2_BLOCK + 1..=LOG2_LARGEST {
+            occupancy.join(log2_cells - LOG2_BLOCK, log2_cells as u8);
         }
         occupancy
     }
 
-    /// Joins cubes of `1 << log2_blocks` blocks per axis that are empty all over.
-    fn join(&mut self, log2_blocks: u32, log2_cells: u8) {
+    /// Joins cubes of `1 << LOG2_BLOCKs` blocks per axis that are empty all over.
+    fn join(&mut self, LOG2_BLOCKs: u32, log2_cells: u8) {
         let [nx, ny, nz] = self.blocks;
-        let side = 1 << log2_blocks;
+        let side = 1 << LOG2_BLOCKs;
         let span = |from: usize, n: usize| from..(from + side).min(n);
         for z in (0..nz).step_by(side) {
             for y in (0..ny).step_by(side) {
@@ -57,7 +59,6 @@ impl Occupancy {
     /// The cubes of cells around cells: the base-2 logarithm of their cells per axis, and whether nothing shows in them.
     #[inline(always)]
     pub(super) fn around<L: Lanes>(&self, [i, j, k]: [L::Ints; 3]) -> (L::Ints, L::Mask) {
-        const LOG2_BLOCK: u32 = Macrocells::LOG2_CELLS;
         let [nx, ny, _] = self.blocks;
         let (row, slab) = (L::Ints::splat(nx as i32), L::Ints::splat((nx * ny) as i32));
         let [i, j, k] = [i.shifted::<LOG2_BLOCK>(), j.shifted::<LOG2_BLOCK>(), k.shifted::<LOG2_BLOCK>()];
@@ -80,7 +81,7 @@ mod tests {
         for [i, j, k] in lit {
             samples[i + dims[0] * (j + dims[1] * k)] = 100;
         }
-        let macrocells = Macrocells::new(&Trilinear::new(&samples, dims).unwrap());
+        let macrocells = BlockRanges::<LOG2_BLOCK>::new(&Trilinear::new(&samples, dims).unwrap());
         let occupancy = Occupancy::new(&macrocells, |[_, high]| high > 50.0);
         // A voxel lights the cells around it.
         let shows = |cell: [usize; 3]| lit.iter().any(|v| (0..3).all(|a| v[a] == cell[a] || v[a] == cell[a] + 1));
@@ -101,6 +102,6 @@ mod tests {
             largest = u32::max(largest, log2);
         }
         assert!(largest >= 5, "found cubes of up to 2^{largest} cells");
-        assert_eq!(Occupancy::full(dims).around::<f32>([5, 5, 5]), (3, false));
+        assert_eq!(Occupancy::full(dims).around::<f32>([5, 5, 5]), (LOG2_BLOCK as i32, false));
     }
 }

@@ -58,18 +58,18 @@ impl<R: Number, const N: usize> Optics<R, N> {
     /// The integral over a piece of this length.
     #[inline(always)]
     pub(super) fn integrate(&self, length_mm: R) -> Integral<R> {
-        let n = R::from_f64(N as f64);
+        let share = R::from_f64(1.0 / N as f64);
         // A rounded or overshooting coefficient may take a vanishing extinction below 0.
-        let sigma = (sum(&self.extinction) / n).max(R::ZERO);
+        let sigma = (share * sum(&self.extinction)).max(R::ZERO);
         let depth = length_mm * sigma;
         let m = depth.mean_transmittance();
-        let scale = length_mm * length_mm / n;
+        let scale = length_mm * length_mm * share;
         let mut error = R::ZERO;
         let radiance = each(
             #[inline(always)]
             |c| {
                 let q = &self.emission[c];
-                let mean = sum(q) / n;
+                let mean = share * sum(q);
                 // G at the coefficients between its ends, where it is 0.
                 let (mut low, mut high, mut g) = (R::ZERO, R::ZERO, R::ZERO);
                 for (&q, &s) in q.iter().zip(&self.extinction).take(N - 1) {

@@ -25,10 +25,7 @@ pub(super) fn composite(
     rest: impl Fn(f64, f64) -> f64,
     mut again: impl FnMut(usize, &mut Front, [i32; 3]),
 ) {
-    for slot in 0..passed.count {
-        if results.pieces[slot] == 0.0 {
-            continue;
-        }
+    for slot in results.slots() {
         let seat = passed.seat[slot] as usize;
         let Some(ray) = &mut rays[seat] else { continue };
         if ray.traced.is_some() {
@@ -38,7 +35,7 @@ pub(super) fn composite(
         let [r, g, b] = &results.radiance;
         let (absorbed, error) = (results.absorbed[slot], results.error[slot]);
         let pieces = results.pieces[slot] as u64;
-        if !ray.light.take([r[slot], g[slot], b[slot]], absorbed, error, exit_mm / length_mm, pieces) {
+        if !ray.light.take([r[slot], g[slot], b[slot]], absorbed, error, exit_mm * walks.per_length_mm(seat), pieces) {
             let [i, j, k] = &passed.cell;
             again(seat, &mut ray.light, [i[slot], j[slot], k[slot]]);
         }

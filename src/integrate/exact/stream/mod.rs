@@ -124,7 +124,7 @@ where
                 return;
             }
             walks.pass::<L>(&stream.occupancy, &mut passed);
-            results.clear(passed.count);
+            results.clear();
             look::<L, V, F>(&passed, &stream.voxels, &stream.function, &mut whole, &mut cut);
             pieces::whole::<L, F>(&whole, &stream.function, &mut results);
             pieces::cut::<L, F>(&cut, &stream.function, harm_per_mm, &mut results);

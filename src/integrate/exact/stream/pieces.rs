@@ -12,6 +12,10 @@ use crate::simd::{Ints, Lanes, Mask, Table};
 /// Iterations after which a crossing is not sought any further; bisection alone would be done by then.
 const MOST_ITERATIONS: usize = 40;
 
+/// The last step of an iteration for a crossing is at most so long. Newton's iteration then doubles the digits once more.
+const PRECISE: f32 = 0.5 * f32::EPSILON;
+const ENOUGH: f32 = 1.0 / 4096.0;
+
 /// Integrates cells whose fields stay in their intervals.
 #[inline(always)]
 pub(super) fn whole<L: Lanes, const F: usize>(shown: &Shown<F>, function: &impl Function<F>, results: &mut Results) {
@@ -120,6 +124,7 @@ fn put<L: Lanes, const F: usize>(
         results.absorbed[slot] = lanes[3][k];
         results.error[slot] = lanes[4][k];
         results.pieces[slot] = lanes[5][k];
+        results.shown[slot / 64] |= 1 << (slot % 64);
     }
 }
 
@@ -171,7 +176,9 @@ impl<L: Lanes> Run<L> {
         let crosses = crosses.and(from.lt(L::ONE));
         let mut to = turn;
         if crosses.any() {
-            to = L::select(crosses, crossing(&self.cubic, level, rises, crosses, from, turn), turn);
+            // Where the function does not jump, a cut that is a little off changes next to nothing.
+            let precision = if axis.steep().is_some() { PRECISE } else { ENOUGH };
+            to = L::select(crosses, crossing(&self.cubic, level, rises, crosses, from, turn, precision), turn);
         }
         Next { to, value: L::select(crosses, level, there), crosses, rises, end }
     }
@@ -236,7 +243,7 @@ fn is_steep<L: Lanes>(steep: &Table, end: L::Ints) -> L::Mask {
 /// Where cubics that are monotone on `[from, to]` take a level that lies between their values at the ends. Newton's iteration
 /// kept inside a shrinking bracket, begun where the chord crosses.
 #[inline(always)]
-fn crossing<L: Lanes>(b: &Cubic<L>, level: L, rises: L::Mask, wanted: L::Mask, from: L, to: L) -> L {
+fn crossing<L: Lanes>(b: &Cubic<L>, level: L, rises: L::Mask, wanted: L::Mask, from: L, to: L, precision: f32) -> L {
     let b: Cubic<L> = each(
         #[inline(always)]
         |k| b[k] - level,
@@ -259,7 +266,7 @@ fn crossing<L: Lanes>(b: &Cubic<L>, level: L, rises: L::Mask, wanted: L::Mask, f
         let newton = u - miss / (L::from_f64(3.0) * (t - s));
         // NaN and infinity from a flat place fail the comparison and bisect.
         let next = L::select(is_between(newton, low, high), newton, half * (low + high));
-        let moved = L::from_f64(0.5 * f64::from(f32::EPSILON)).lt((next - u).abs());
+        let moved = L::from_f64(f64::from(precision)).lt((next - u).abs());
         let exact = miss.le(L::ZERO).and(L::ZERO.le(miss));
         u = L::select(open.and_not(exact), next, u);
         open = open.and(moved).and_not(exact);

@@ -72,17 +72,36 @@ pub(super) struct Results {
     pub(super) absorbed: [f32; CELLS],
     /// Infinite where the cell must be integrated again.
     pub(super) error: [f32; CELLS],
-    /// Pieces integrated; 0 where nothing shows.
+    /// Pieces integrated.
     pub(super) pieces: [f32; CELLS],
+    /// Bit by bit, whether a cell has a result: something may show in it.
+    pub(super) shown: [u64; CELLS / 64],
 }
 
 impl Results {
     pub(super) fn new() -> Self {
-        Results { radiance: [[0.0; CELLS]; 3], absorbed: [0.0; CELLS], error: [0.0; CELLS], pieces: [0.0; CELLS] }
+        Results {
+            radiance: [[0.0; CELLS]; 3],
+            absorbed: [0.0; CELLS],
+            error: [0.0; CELLS],
+            pieces: [0.0; CELLS],
+            shown: [0; CELLS / 64],
+        }
     }
 
-    /// Forgets the first results.
-    pub(super) fn clear(&mut self, count: usize) {
-        self.pieces[..count].fill(0.0);
+    /// Forgets all results.
+    pub(super) fn clear(&mut self) {
+        self.shown.fill(0);
+    }
+
+    /// The cells that have results, in order.
+    #[inline(always)]
+    pub(super) fn slots(&self) -> impl Iterator<Item = usize> {
+        self.shown.iter().enumerate().flat_map(|(word, &bits)| {
+            std::iter::successors((bits != 0).then_some(bits), |&rest| {
+                Some(rest & (rest - 1)).filter(|&rest| rest != 0)
+            })
+            .map(move |rest| 64 * word + rest.trailing_zeros() as usize)
+        })
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 
-use crate::field::{Macrocells, Trilinear, Voxel};
+use crate::field::{BlockRanges, Trilinear, Voxel};
 use crate::integrate::occupancy::Occupancy;
 use crate::math::{Number, each};
 use crate::simd::{Ints, Lanes, Pairs};
@@ -36,7 +36,7 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     /// Where something may show, given the ranges of stored values at which it does.
     pub(in crate::integrate::exact) fn occupancy(&self, may_show: impl Fn([f32; 2]) -> bool) -> Occupancy {
         match Trilinear::new(self.samples, self.dims) {
-            Ok(field) => Occupancy::new(&Macrocells::new(&field), may_show),
+            Ok(field) => Occupancy::new(&BlockRanges::new(&field), may_show),
             // Longer than macrocells address.
             Err(_) => Occupancy::full(self.dims),
         }

@@ -27,6 +27,8 @@ pub(super) struct Walks {
     /// Where each enters and leaves the volume, mm from its origin.
     entry_mm: [f64; RAYS],
     exit_mm: [f64; RAYS],
+    /// 1 over the length inside, 1/mm.
+    per_length_mm: [f64; RAYS],
     /// How far each has come.
     at_mm: [f64; RAYS],
     /// Each stays in the same block, or among empty ones, up to here.
@@ -47,6 +49,7 @@ impl Walks {
             mm_per: [[0.0; RAYS]; 3],
             entry_mm: [0.0; RAYS],
             exit_mm: [0.0; RAYS],
+            per_length_mm: [0.0; RAYS],
             at_mm: [0.0; RAYS],
             until_mm: [0.0; RAYS],
             cell: [[0; RAYS]; 3],
@@ -60,6 +63,7 @@ impl Walks {
     pub(super) fn enter(&mut self, seat: usize, chord: &Chord) {
         self.entry_mm[seat] = chord.entry_mm;
         self.exit_mm[seat] = chord.entry_mm + chord.length_mm;
+        self.per_length_mm[seat] = 1.0 / chord.length_mm;
         self.at_mm[seat] = chord.entry_mm;
         self.until_mm[seat] = chord.entry_mm;
         for a in 0..3 {
@@ -89,9 +93,15 @@ impl Walks {
         self.exit_mm[seat] - self.entry_mm[seat]
     }
 
+    /// 1 over the length inside the volume, 1/mm.
+    #[inline(always)]
+    pub(super) fn per_length_mm(&self, seat: usize) -> f64 {
+        self.per_length_mm[seat]
+    }
+
     /// The fraction of a ray that lies in front of a distance from its origin.
     pub(super) fn fraction(&self, seat: usize, at_mm: f64) -> f64 {
-        (at_mm - self.entry_mm[seat]) / self.length_mm(seat)
+        (at_mm - self.entry_mm[seat]) * self.per_length_mm[seat]
     }
 
     /// Where a ray leaves a cell across an axis; infinite for the border and an axis on which it does not move.
