@@ -32,7 +32,7 @@ pub use auto::{Choice, choose_method};
 pub use choose::{Candidate, Chosen, Target, choose};
 pub use climb::{LeftOut, Measurement};
 pub use costs::Cost;
-pub use errors::{Errors, difference};
+pub use errors::{Errors, difference, share_unseen};
 pub use front::pareto_front;
 pub use ladder::{Family, Rung, exact, ladder};
 pub use report::Report;
