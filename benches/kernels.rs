@@ -9,12 +9,12 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Duration;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group};
 use pellucid::classify::{Classifier, bake};
 use pellucid::image::metrics;
 use pellucid::integrate;
-use pellucid::io::dicom::SeriesChoice;
 use pellucid::io;
+use pellucid::io::dicom::SeriesChoice;
 use pellucid::pipeline::{self, Options};
 use pellucid::plan::Plan;
 use pellucid::spec::Spec;

@@ -19,7 +19,7 @@ fn studied(seconds: u64) -> Study {
     let (volume, scene) = subject();
     let settings =
         Settings { time: Duration::from_secs(seconds), tolerance: 1.0 / 255.0, pixels: 100, room_for_f32: true };
-    study(&volume, &scene, &settings, &|_, share| assert!((0.0..=1.0).contains(&share), "a share of {share}"))
+    study(&volume, &scene, &settings, &mut [], &|_, share| assert!((0.0..=1.0).contains(&share), "a share of {share}"))
         .expect("every setting renders light")
 }
 

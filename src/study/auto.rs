@@ -13,8 +13,8 @@ use serde::Serialize;
 
 use super::choose::{Candidate, Chosen, Target, choose};
 use super::clock::Deadline;
-use super::ladder::{Family, Rung, exact, ladder};
 use super::errors::share_unseen;
+use super::ladder::{Family, Rung, exact, ladder};
 use super::trial::{Trial, reason_to_leave_out};
 use super::truth::Truth;
 use crate::error::{Error, Fault, Result};

@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::integrate::Schedule;
 use crate::plan::{Jitter, JitterKind, March, Method, SampleRule};
-use crate::scene::Scene;
+use crate::scene::{ClassifyAt, Scene};
 use crate::volume::Volume;
 
 /// Most rounds of the two.
@@ -108,6 +108,10 @@ fn choices<'a>(
         }
         if let Some(volume_f32) = volume_f32 {
             add("f32 instead of 16-bit samples", side(method), Side { volume: volume_f32, ..side(method) });
+        }
+        if scene.effects.classify == ClassifyAt::Samples && volume.rgba_encoding().is_none() {
+            let scene = variants::classified_at_voxels(scene);
+            add("classification before interpolation", side(method), Side { scene, ..side(method) });
         }
         let half = variants::at_half_size(scene);
         add("twice the width and height", Side { scene: half, ..side(method) }, side(method));
