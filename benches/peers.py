@@ -24,6 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="two scenes, two rounds, no scaling")
+    parser.add_argument("--scenes", default="", metavar="WORD", help="only scenes whose name holds this, such as engine")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--certify", type=int, default=20_000, help="pixels of each picture that the oracle recomputes")
@@ -53,10 +54,12 @@ def run(options, work):
     data = options.data or pathlib.Path(os.environ.get("PELLUCID_DATA") or ROOT.parent / "shared" / "data")
     pellucid = Pellucid(options.program or built(), work, options.threads)
     views = [scenes.VIEWS[0], scenes.VIEWS[3]] if options.quick else scenes.VIEWS
-    rounds = 2 if options.quick else options.rounds
+    views = [view for view in views if options.scenes in view.name]
+    rounds = min(2, options.rounds) if options.quick else options.rounds
     sources = scenes.sources(data, work)
     volumes = {}
-    for scan in {view.scan: None for view in views}:
+    head = scenes.VIEWS[0]
+    for scan in {view.scan: None for view in [head, *views]}:
         say(f"{scan}: reading")
         volumes[scan] = scenes.Volume(pellucid, scan, sources[scan], work)
     results = []
@@ -65,7 +68,6 @@ def run(options, work):
             say(f"{view.name}{', lit' if lit else ''}: {rounds} rounds")
             results.append(measure.scene(pellucid, view, volumes[view.scan], work, lit, rounds, options.certify))
     facts = {"threads": options.threads, "rounds": rounds, "pellucid": pellucid.version(), "vtk": results[0].vtk_version}
-    head = scenes.VIEWS[0]
     say("memory with a 2D transfer function")
     facts["memory_2d"] = measure.two_dimensional_memory(pellucid, head, volumes[head.scan], work)
     facts["memory_2d_raw"] = volumes[head.scan].raw_bytes

@@ -94,9 +94,9 @@ def errors(pellucid, pipeline, folder, samples, step_mm, result):
 
 
 def two_dimensional_memory(pellucid, view, volume, folder):
-    """Peak memory with a transfer function of value and gradient magnitude, lit."""
+    """Peak memory with a transfer function of value and gradient magnitude, lit. The picture is small: memory is of the volume."""
     pipeline = scenes.pipeline(view, volume, folder, lit=True, two_d=True)
-    return pellucid.render(pipeline, EXACT)["peak_memory_bytes"]
+    return pellucid.render(pipeline, EXACT, size=128)["peak_memory_bytes"]
 
 
 def threads(pellucid, pipeline, rounds):
