@@ -71,6 +71,7 @@ impl LogLog {
         if let Some((name, level)) = self.level.as_ref().filter(|(_, level)| is_placed(*level)) {
             let y = plane.y.pixel(*level);
             drawing.dashes([CORNER[0], y], [CORNER[0] + SIZE[0], y], LEVEL, 2.0);
+            labels.avoid([CORNER[0] + 0.5 * SIZE[0], y], [0.5 * SIZE[0], 1.0]);
             // Beside the chart, where nothing else is.
             drawing.text([CORNER[0] + SIZE[0] + 8.0, y + 5.0], TICK, Anchor::Start, name);
         }
@@ -78,7 +79,7 @@ impl LogLog {
             drawing.stroke(&plane.line(&series.points), color, 1.4);
             for point in drawn(&series.points).map(|point| plane.place(point)) {
                 drawing.fill(&marker::outline(place, point, MARKER), color, "point");
-                labels.avoid(point, MARKER);
+                labels.avoid(point, [MARKER, MARKER]);
             }
         }
         for (point, text) in self.notes.iter().filter(|(point, _)| is_drawn(point)) {
@@ -206,7 +207,7 @@ mod tests {
     fn every_point_and_name_is_in_the_svg() {
         let svg = chart(vec![[0.1, 1e-1], [1.0, 1e-2], [10.0, 1e-4]]).svg();
         assert_eq!(points_in(&svg), 3, "points of the series");
-        for name in ["Accuracy against time", "a head", "march", "front", "tolerance", "seconds", "10⁻³", "1/2"] {
+        for name in ["Accuracy against time", "a head", "march", "front", "tolerance", "seconds", "10⁻⁴", "1/2"] {
             assert!(svg.contains(name), "{name:?} is not in the chart");
         }
     }

@@ -92,8 +92,8 @@ impl Decades {
 
 /// One digit times a power of ten: in full where that is short, else `10⁻³` or `2·10⁻³`.
 fn decimal(x: f64) -> String {
-    if (0.00999..10_001.0).contains(&x) {
-        return format!("{}", (x * 1e3).round() / 1e3);
+    if (0.000_999..10_001.0).contains(&x) {
+        return format!("{}", (x * 1e4).round() / 1e4);
     }
     let power = (x.log10() + 1e-9).floor();
     let digit = (x / 10f64.powf(power)).round();
@@ -152,7 +152,7 @@ mod tests {
             let labels = Decades::around(numbers.into_iter(), [0.0, 100.0]).labels();
             labels.into_iter().map(|(_, text)| text).collect::<Vec<_>>()
         };
-        assert_eq!(texts([2e-4, 30.0]), ["10⁻³", "0.01", "0.1", "1", "10"]);
+        assert_eq!(texts([2e-4, 30.0]), ["0.001", "0.01", "0.1", "1", "10"]);
         assert_eq!(texts([0.3, 4.0]), ["0.2", "0.5", "1", "2", "5"]);
         assert_eq!(texts([1e-7, 2e-7]), ["10⁻⁷", "2·10⁻⁷"], "below the room around them is nothing round");
         let scale = Decades::around([1.6, 100.0 / 1.6].into_iter(), [0.0, 100.0]);

@@ -20,9 +20,9 @@ impl Labels {
         Labels { within: [x, y, x + width, y + height], taken: Vec::new() }
     }
 
-    /// Takes the place of a marker.
-    pub(super) fn avoid(&mut self, [x, y]: [f64; 2], half: f64) {
-        self.taken.push([x - half, y - half, x + half, y + half]);
+    /// Takes the place of something else by its middle and half its size.
+    pub(super) fn avoid(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2]) {
+        self.taken.push([x - width, y - height, x + width, y + height]);
     }
 
     /// The start of the baseline of a text beside a point: to the right, above, below or to the left of it, where there is

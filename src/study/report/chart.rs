@@ -63,15 +63,15 @@ fn fineness(m: &Measurement) -> f64 {
     }
 }
 
-/// What stands beside points, in the order in which it gets room: the front, other programs, the exact integrator, then
-/// one family of steps, since the others have the same.
+/// What stands beside points, in the order in which it gets room: the front, other programs, the exact integrator. The
+/// steps of the march are those of the other programs, and beside its points, which are close together, would be in doubt.
 fn notes(study: &Study) -> Vec<([f64; 2], String)> {
     let note = |m: &Measurement| (point(m.seconds, m.errors.largest), m.rung.fineness.clone());
     let of = |family: Family| study.settings.iter().filter(move |m| m.rung.family == family);
     let peer = |m: &PeerMeasurement| (point(m.seconds, m.errors.largest), m.step_voxels.clone());
     let mut notes: Vec<([f64; 2], String)> = front(study).map(note).collect();
     notes.extend(study.peers.iter().map(peer));
-    for m in of(Family::Exact).chain(of(Family::Left)).map(note) {
+    for m in of(Family::Exact).map(note) {
         if !notes.contains(&m) {
             notes.push(m);
         }
