@@ -69,7 +69,13 @@ fn notes(study: &Study) -> Vec<([f64; 2], String)> {
     let note = |m: &Measurement| (point(m.seconds, m.errors.largest), m.rung.fineness.clone());
     let of = |family: Family| study.settings.iter().filter(move |m| m.rung.family == family);
     let peer = |m: &PeerMeasurement| (point(m.seconds, m.errors.largest), m.step_voxels.clone());
-    let mut notes: Vec<([f64; 2], String)> = front(study).map(note).collect();
+    let mut notes: Vec<([f64; 2], String)> = Vec::new();
+    for (place, fineness) in front(study).map(note) {
+        // Families at the same step lie side by side on the front: one number says it for all.
+        if notes.iter().all(|(_, written)| *written != fineness) {
+            notes.push((place, fineness));
+        }
+    }
     notes.extend(study.peers.iter().map(peer));
     for m in of(Family::Exact).map(note) {
         if !notes.contains(&m) {
