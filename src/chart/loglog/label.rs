@@ -11,6 +11,8 @@ pub(super) struct Labels {
 
 /// Width of an average letter by its size, in DejaVu Sans.
 const LETTER: f64 = 0.6;
+/// Between two texts, half of it on either side, pixels.
+const APART: f64 = 2.5;
 /// Between a point and its text, pixels.
 const GAP: f64 = 8.0;
 
@@ -45,9 +47,9 @@ impl Labels {
     }
 }
 
-/// The box of a text by the start of its baseline.
+/// The box of a text by the start of its baseline, with what sets it apart from another on its line.
 fn around([x, y]: [f64; 2], width: f64, size: f64) -> Box4 {
-    [x, y - 0.8 * size, x + width, y + 0.2 * size]
+    [x - APART, y - 0.8 * size, x + width + APART, y + 0.2 * size]
 }
 
 #[cfg(test)]
