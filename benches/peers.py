@@ -27,6 +27,7 @@ def arguments():
     parser.add_argument("--scenes", default="", metavar="WORD", help="only scenes whose name holds this, such as engine")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--size", type=int, default=512, help="pixels of the pictures' sides")
     parser.add_argument("--certify", type=int, default=20_000, help="pixels of each picture that the oracle recomputes")
     parser.add_argument("--edges", default="128,256,384,512", help="voxels of the synthetic head from ear to ear")
     parser.add_argument("--sizes", default="256,512,1024,2048", help="pixels of the picture's sides")
@@ -52,7 +53,7 @@ def run(options, work):
     """All measurements; gives facts about the run and one result per scene, lit and not."""
     begun = time.perf_counter()
     data = options.data or pathlib.Path(os.environ.get("PELLUCID_DATA") or ROOT.parent / "shared" / "data")
-    pellucid = Pellucid(options.program or built(), work, options.threads)
+    pellucid = Pellucid(options.program or built(), work, options.threads, options.size)
     views = [scenes.VIEWS[0], scenes.VIEWS[3]] if options.quick else scenes.VIEWS
     views = [view for view in views if options.scenes in view.name]
     rounds = min(2, options.rounds) if options.quick else options.rounds
@@ -67,7 +68,10 @@ def run(options, work):
         for view in views:
             say(f"{view.name}{', lit' if lit else ''}: {rounds} rounds")
             results.append(measure.scene(pellucid, view, volumes[view.scan], work, lit, rounds, options.certify))
-    facts = {"threads": options.threads, "rounds": rounds, "pellucid": pellucid.version(), "vtk": results[0].vtk_version}
+    facts = {
+        "threads": options.threads, "rounds": rounds, "size": options.size,
+        "pellucid": pellucid.version(), "vtk": results[0].vtk_version,
+    }
     say("memory with a 2D transfer function")
     facts["memory_2d"] = measure.two_dimensional_memory(pellucid, head, volumes[head.scan], work)
     facts["memory_2d_raw"] = volumes[head.scan].raw_bytes
@@ -79,9 +83,9 @@ def run(options, work):
         say("threads")
         facts["speedup"] = measure.threads(pellucid, pipeline, rounds)
         say("sizes of the picture")
-        facts["sizes"] = measure.picture_sizes(pellucid, pipeline, numbers(options.sizes), 3)
+        facts["sizes"] = measure.picture_sizes(pellucid, pipeline, numbers(options.sizes), 2)
         say("sizes of the volume")
-        facts["edges"] = measure.volume_edges(pellucid, work, numbers(options.edges), 3)
+        facts["edges"] = measure.volume_edges(pellucid, work, numbers(options.edges), 2)
     facts["minutes"] = (time.perf_counter() - begun) / 60
     return facts, results
 

@@ -85,7 +85,7 @@ def errors(pellucid, pipeline, folder, samples, step_mm, result):
     pellucid.render(pipeline, "reference", truth, size=TRUTH_SIZE)
     pellucid.render(pipeline, MARCH, test, size=TRUTH_SIZE)
     result.largest_error["march"], _ = pellucid.largest_difference(truth, test)
-    pellucid.export(pipeline, folder / "vtk", size=(TRUTH_SIZE, TRUTH_SIZE))
+    pellucid.export(pipeline, folder / "vtk", size=TRUTH_SIZE)
     with VtkFrames(folder / "vtk", samples, pellucid.threads) as vtk:
         vtk.seconds(step_mm, frame)
     if result.lit:

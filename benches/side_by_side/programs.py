@@ -12,8 +12,8 @@ import numpy as np
 class Pellucid:
     """The program. Seconds of a frame are those of the stage `integrate`: macrocells and all else it needs beyond the voxels."""
 
-    def __init__(self, program, folder, threads):
-        self.program, self.threads = str(program), threads
+    def __init__(self, program, folder, threads, size):
+        self.program, self.threads, self.size = str(program), threads, size
         self.folder = folder
 
     def run(self, *arguments, codes=(0,)):
@@ -25,15 +25,16 @@ class Pellucid:
     def version(self):
         return self.run("--version").stdout.strip()
 
-    def export(self, pipeline, folder, size=(512, 512)):
+    def export(self, pipeline, folder, size=None):
         """The scene of a pipeline for VTK; gives what scene.json says."""
         shutil.rmtree(folder, ignore_errors=True)
-        self.run("export-vtk", pipeline, "--set", f"image.size=[{size[0]},{size[1]}]", "-o", folder)
+        size = size or self.size
+        self.run("export-vtk", pipeline, "--set", f"image.size=[{size},{size}]", "-o", folder)
         return json.loads((folder / "scene.json").read_text())
 
-    def render(self, pipeline, integrate, output=None, size=512, threads=None, certify=0, sets=()):
+    def render(self, pipeline, integrate, output=None, size=None, threads=None, certify=0, sets=()):
         """Renders a picture; gives its sidecar with seconds by stage and those of the whole process."""
-        output = output or self.folder / "picture.png"
+        output, size = output or self.folder / "picture.png", size or self.size
         arguments = [pipeline, "-q", "--threads", threads or self.threads, "--size", f"{size}x{size}", "-o", output]
         for key in (f"integrate={integrate}", *sets):
             arguments += ["--set", key]

@@ -122,7 +122,7 @@ def markdown(facts, results):
     yes = lambda holds: "—" if holds is None else ("yes" if holds else "**no**")
     parts = [
         "# Side by side with VTK", machine(facts),
-        "Written by `benches/peers.py`; [README.md](README.md) says how it measures. Frames of 512² pixels in "
+        f"Written by `benches/peers.py`; [README.md](README.md) says how it measures. Frames of {facts['size']}² pixels in "
         f"{facts['rounds']} rounds in which the programs take turns; medians. Ratios are medians of each round's; those "
         "above 1 say that pellucid is quicker. Errors are of a channel, linear, over black.",
         "## What should hold",
@@ -137,11 +137,11 @@ def markdown(facts, results):
         parts += ["## Size of the picture", "Skull phantom, bone; seconds by width and height in pixels.",
                   by_number("pixels", facts["sizes"])]
     if "edges" in facts:
-        parts += ["## Size of the volume", "Synthetic head, bone, 512²; seconds by voxels from ear to ear.",
+        parts += ["## Size of the volume", "Synthetic head, bone; seconds by voxels from ear to ear.",
                   by_number("voxels", facts["edges"])]
     if "cold" in facts:
         total, stages, emptied = facts["cold"]
         listed = ", ".join(f"{name} {seconds(s)} s" for name, s in stages.items())
-        parts += ["## Cold start", f"140 DICOM files to a picture of 512² within 1/255, the whole process: {total:.2f} s "
+        parts += ["## Cold start", f"140 DICOM files to a picture within 1/255, the whole process: {total:.2f} s "
                   f"({listed}); {emptied}."]
     return "\n\n".join(parts) + "\n"
