@@ -102,7 +102,9 @@ fn loading(criterion: &mut Criterion) {
     for (name, encoding) in [("nrrd/raw", io::nrrd::Encoding::Raw), ("nrrd/gzip", io::nrrd::Encoding::Gzip)] {
         let path = folder.path().join("head.nrrd");
         io::nrrd::write(&path, &volume, encoding, &[]).expect("written");
-        group.bench_function(name, |bencher| bencher.iter(|| io::load(&path, &SeriesChoice::default(), None)));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| io::load(&path, &SeriesChoice::default(), None).expect("read"))
+        });
     }
     group.finish();
 }
