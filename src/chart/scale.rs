@@ -97,7 +97,7 @@ fn decimal(x: f64) -> String {
     }
     let power = (x.log10() + 1e-9).floor();
     let digit = (x / 10f64.powf(power)).round();
-    let raised: String = format!("{power}").chars().map(|c| superscript(c)).collect();
+    let raised: String = format!("{power}").chars().map(superscript).collect();
     if digit == 1.0 { format!("10{raised}") } else { format!("{digit}·10{raised}") }
 }
 
