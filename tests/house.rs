@@ -7,6 +7,7 @@ const README: &str = include_str!("../README.md");
 const ARCHITECTURE: &str = include_str!("../ARCHITECTURE.md");
 const TESTS_README: &str = include_str!("README.md");
 const PIPELINES_README: &str = include_str!("../pipelines/README.md");
+const BENCHES_README: &str = include_str!("../benches/README.md");
 const PRESETS_README: &str = include_str!("../presets/README.md");
 
 /// The words of each command line that starts pellucid in a document's code blocks, from its sub-command on.
@@ -54,7 +55,9 @@ fn linked_files(document: &str) -> Vec<&str> {
 fn the_commands_of_the_readme_exist() {
     let found = commands(README);
     assert!(found.len() >= 5, "the README shows how to use the program; found only {found:?}");
-    let objections: Vec<String> = found.iter().filter_map(|words| objection(words)).collect();
+    let benches = commands(BENCHES_README);
+    assert!(!benches.is_empty(), "benches/README.md shows how its chart is made");
+    let objections: Vec<String> = found.iter().chain(&benches).filter_map(|words| objection(words)).collect();
     assert!(objections.is_empty(), "{}", objections.join("\n"));
 }
 
@@ -126,6 +129,7 @@ fn links_between_documents_lead_somewhere() {
         ("tests", TESTS_README),
         ("pipelines", PIPELINES_README),
         ("presets", PRESETS_README),
+        ("benches", BENCHES_README),
     ];
     for (folder, document) in documents {
         for link in linked_files(document) {

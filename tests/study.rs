@@ -2,9 +2,11 @@
 
 use std::time::Duration;
 
-use pellucid::plan::Method;
+use pellucid::image::Image;
+use pellucid::integrate;
+use pellucid::plan::{March, Method, SampleRule};
 use pellucid::scene::Scene;
-use pellucid::study::{Family, Report, Settings, Study, Target, choose_method, study};
+use pellucid::study::{Candidate, Errors, Family, Peer, Report, Settings, Study, Target, choose_method, study};
 use pellucid::volume::Volume;
 
 use crate::support::scenes::{headlight, rough_volume, scene_around, two_colors};
@@ -19,7 +21,7 @@ fn studied(seconds: u64) -> Study {
     let (volume, scene) = subject();
     let settings =
         Settings { time: Duration::from_secs(seconds), tolerance: 1.0 / 255.0, pixels: 100, room_for_f32: true };
-    study(&volume, &scene, &settings, &|_, share| assert!((0.0..=1.0).contains(&share), "a share of {share}"))
+    study(&volume, &scene, &settings, &mut [], &|_, share| assert!((0.0..=1.0).contains(&share), "a share of {share}"))
         .expect("every setting renders light")
 }
 
@@ -88,14 +90,50 @@ fn tables_chart_and_json_hold_every_setting() {
     assert!(first["seconds"].as_f64().is_some_and(|s| s > 0.0), "found {first}");
 }
 
+/// Another program that happens to march as we do.
+struct Twin {
+    volume: Volume,
+    scene: Scene,
+}
+
+impl Peer for Twin {
+    fn name(&self) -> String {
+        "twin".to_owned()
+    }
+
+    fn render(&mut self, step_mm: f64) -> pellucid::Result<(Image, f64)> {
+        let method = Method::March(March::plain(SampleRule::Left, step_mm));
+        let rendered = integrate::render(&self.volume, &self.scene, &method, &|_| ())?;
+        Ok((rendered.image, 1e-4 / step_mm))
+    }
+}
+
+#[test]
+fn another_program_is_measured_by_the_same_steps_against_the_same_pixels() {
+    let (volume, scene) = subject();
+    let settings = Settings { time: Duration::from_secs(2), tolerance: 1.0 / 255.0, pixels: 100, room_for_f32: false };
+    let twin: Box<dyn Peer> = Box::new(Twin { volume: volume.clone(), scene: scene.clone() });
+    let study = study(&volume, &scene, &settings, &mut [twin], &|_, _| ()).expect("a study");
+    let ours: Vec<&Errors> =
+        study.settings.iter().filter(|m| m.rung.family == Family::Left).map(|m| &m.errors).collect();
+    let theirs: Vec<&Errors> = study.peers.iter().map(|m| &m.errors).collect();
+    let both = ours.len().min(theirs.len());
+    assert!(both > 0 && ours[..both] == theirs[..both], "errors of {ours:?}, and of the same by a twin {theirs:?}");
+    assert!(study.peers.iter().all(|m| m.seconds > 0.0 && m.repeats > 0), "found {:#?}", study.peers);
+    let report = Report(&study);
+    assert!(report.markdown().contains("twin, step 4") && report.settings_csv().contains("\"twin\""), "in the tables");
+    assert!(report.chart().series.iter().any(|series| series.name == "twin"), "in the chart");
+}
+
 #[test]
 fn what_is_chosen_for_a_tolerance_keeps_it_on_the_sample() {
     let (volume, scene) = subject();
     let tolerance = 2e-3;
     let choice = choose_method(&volume, &scene, Target::Tolerance(tolerance), &|_| ()).expect("a choice");
     let chosen = choice.candidates.iter().find(|c| c.rung == choice.rung).expect("the exact integrator is a candidate");
-    assert!(choice.met && chosen.largest_error <= tolerance, "found {chosen:?}: {}", choice.because);
-    let quicker = choice.candidates.iter().find(|c| c.largest_error <= tolerance && c.seconds < chosen.seconds);
+    assert!(choice.met && chosen.largest_error <= chosen.room(tolerance), "found {chosen:?}: {}", choice.because);
+    let within = |c: &&Candidate| c.largest_error <= c.room(tolerance);
+    let quicker = choice.candidates.iter().filter(within).find(|c| c.seconds < chosen.seconds);
     assert_eq!(quicker, None, "a quicker one keeps it too");
 }
 

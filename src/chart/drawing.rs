@@ -59,6 +59,25 @@ impl Drawing {
         }
     }
 
+    /// A filled outline of a class, by which style sheets and tests find it.
+    pub(super) fn fill(&mut self, outline: &Outline, color: &str, class: &str) {
+        if !outline.0.is_empty() {
+            self.element(&format!("<path class=\"{class}\" d=\"{}\" fill=\"{color}\"/>", outline.0));
+        }
+    }
+
+    /// A dashed line from point to point.
+    pub(super) fn dashes(&mut self, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], color: &str, width: f64) {
+        self.element(&format!(
+            "<path d=\"M{} {}L{} {}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{}\" stroke-dasharray=\"9 6\"/>",
+            short(x0),
+            short(y0),
+            short(x1),
+            short(y1),
+            short(width)
+        ));
+    }
+
     /// A text with its baseline at a point.
     pub(super) fn text(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, text: &str) {
         let place = format!("x=\"{}\" y=\"{}\"", short(x), short(y));

@@ -1,11 +1,10 @@
-//! Histograms and charts as pictures to read, drawn as SVG; the PNG of a histogram is that drawing rasterised.
+//! Histograms and charts as pictures to read, drawn as SVG; a PNG is that drawing rasterised.
 //!
 //! No font of the system is read: pictures carry DejaVu Sans along (PNG), or ask for it by name (SVG). Counts are shown
 //! logarithmically by colours of falling lightness, dark for many, so that the eye orders them without the colour bar.
 
 mod contour;
 mod drawing;
-mod font;
 mod histogram;
 mod ink;
 mod loglog;

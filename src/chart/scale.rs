@@ -45,6 +45,67 @@ impl Logarithmic {
     }
 }
 
+/// Positive numbers on a logarithmic scale between two pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Decades {
+    from: f64,
+    to: f64,
+    pixels: [f64; 2],
+}
+
+impl Decades {
+    /// The numbers and some room around them; one decade where there are none.
+    pub(super) fn around(numbers: impl Iterator<Item = f64>, pixels: [f64; 2]) -> Self {
+        let [low, high] = numbers.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], x| [low.min(x), high.max(x)]);
+        let [from, to] = if low.is_finite() { [low / 1.6, high * 1.6] } else { [1.0, 10.0] };
+        Decades { from, to, pixels }
+    }
+
+    /// The pixel of a number.
+    pub(super) fn pixel(&self, x: f64) -> f64 {
+        let [at, end] = self.pixels;
+        at + (x / self.from).ln() / (self.to / self.from).ln() * (end - at)
+    }
+
+    /// Powers of ten on the scale.
+    pub(super) fn powers(&self) -> Vec<f64> {
+        self.multiples(&[1.0])
+    }
+
+    /// Twice to nine times the powers of ten.
+    pub(super) fn between(&self) -> Vec<f64> {
+        self.multiples(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
+    }
+
+    /// Numbers to write beside the scale: powers of ten; with 2 and 5 between them where there would be few.
+    pub(super) fn labels(&self) -> Vec<(f64, String)> {
+        let numbers = if self.powers().len() < 3 { self.multiples(&[1.0, 2.0, 5.0]) } else { self.powers() };
+        numbers.into_iter().map(|x| (x, decimal(x))).collect()
+    }
+
+    fn multiples(&self, digits: &[f64]) -> Vec<f64> {
+        let (first, last) = (self.from.log10().floor() as i32, self.to.log10().ceil() as i32);
+        let of_power = |power: i32| digits.iter().map(move |digit| digit * 10f64.powi(power));
+        (first..=last).flat_map(of_power).filter(|x| (self.from..=self.to).contains(x)).collect()
+    }
+}
+
+/// One digit times a power of ten: in full where that is short, else `10⁻³` or `2·10⁻³`.
+fn decimal(x: f64) -> String {
+    if (0.000_999..10_001.0).contains(&x) {
+        return format!("{}", (x * 1e4).round() / 1e4);
+    }
+    let power = (x.log10() + 1e-9).floor();
+    let digit = (x / 10f64.powf(power)).round();
+    let raised: String = format!("{power}").chars().map(superscript).collect();
+    if digit == 1.0 { format!("10{raised}") } else { format!("{digit}·10{raised}") }
+}
+
+fn superscript(c: char) -> char {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])
+}
+
 /// A number as people write it: a true minus, no digits beyond those that a step of ticks needs.
 pub(super) fn label(x: f64, step: f64) -> String {
     let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 9.0) as usize;
@@ -83,6 +144,19 @@ mod tests {
         assert!((scale.share(100) - 0.5).abs() < 1e-12 && scale.share(1) == 0.0 && scale.share(10_000) == 1.0);
         assert_eq!(scale.ticks(), [1, 10, 100, 1000, 10_000]);
         assert_eq!((Logarithmic { highest: 1 }.share(1), Logarithmic { highest: 0 }.ticks()), (1.0, vec![]));
+    }
+
+    #[test]
+    fn decades_are_labelled_and_a_few_of_them_more_densely() {
+        let texts = |numbers: [f64; 2]| {
+            let labels = Decades::around(numbers.into_iter(), [0.0, 100.0]).labels();
+            labels.into_iter().map(|(_, text)| text).collect::<Vec<_>>()
+        };
+        assert_eq!(texts([2e-4, 30.0]), ["0.001", "0.01", "0.1", "1", "10"]);
+        assert_eq!(texts([0.3, 4.0]), ["0.2", "0.5", "1", "2", "5"]);
+        assert_eq!(texts([1e-7, 2e-7]), ["10⁻⁷", "2·10⁻⁷"], "below the room around them is nothing round");
+        let scale = Decades::around([1.6, 100.0 / 1.6].into_iter(), [0.0, 100.0]);
+        assert!((scale.pixel(10.0) - 50.0).abs() < 1e-9, "the middle, found {}", scale.pixel(10.0));
     }
 
     #[test]

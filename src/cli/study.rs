@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use pellucid::Result;
-use pellucid::pipeline;
+use pellucid::interchange::vtk::Mapper;
+use pellucid::pipeline::{self, VtkPeer};
 use pellucid::spec::Spec;
 use pellucid::study::{Report, Settings};
 
@@ -33,9 +34,33 @@ pub(super) struct Study {
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..))]
     pixels: u32,
 
+    /// Other programs to measure on the same scene: VTK by its fixed-point mapper on the CPU, or by its GPU mapper
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "PEER,…")]
+    peers: Vec<PeerName>,
+
+    /// The Python that has vtk and numpy
+    #[arg(long, value_name = "PROGRAM", default_value = "python3", requires = "peers")]
+    python: PathBuf,
+
     /// How the result is printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
+}
+
+/// Another program, as it is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum PeerName {
+    Vtk,
+    VtkGpu,
+}
+
+impl PeerName {
+    fn mapper(self) -> Mapper {
+        match self {
+            PeerName::Vtk => Mapper::Cpu,
+            PeerName::VtkGpu => Mapper::Gpu,
+        }
+    }
 }
 
 impl Study {
@@ -48,9 +73,12 @@ impl Study {
             pixels: self.pixels as usize,
             room_for_f32: true,
         };
+        let peers: Vec<VtkPeer> =
+            self.peers.iter().map(|peer| VtkPeer { python: self.python.clone(), mapper: peer.mapper() }).collect();
         let bar = Bar::new(global.quiet);
-        let study =
-            pipeline::study(&spec, &self.pipeline.options(None), &settings, &|what, share| bar.spend(what, share));
+        let study = pipeline::study(&spec, &self.pipeline.options(None), &settings, &peers, &|what, share| {
+            bar.spend(what, share)
+        });
         bar.clear();
         let study = study?;
         let paths = pipeline::write_study(&study, &self.output)?;

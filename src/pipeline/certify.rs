@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use crate::image::Image;
 use crate::oracle::Oracle;
 use crate::plan::Plan;
-use crate::study::{Errors, difference};
+use crate::study::{Errors, difference, share_unseen};
 use crate::volume::Volume;
 
 /// Chance that the statement of a [`Certificate`] is wrong.
@@ -67,13 +67,12 @@ impl Certificate {
     }
 }
 
-/// If a share p of all pixels were above, `pixels` random ones would all be below with the chance (1 - p)^pixels.
 fn statement(pixels: usize, of_pixels: usize, above_tolerance: Option<usize>) -> String {
     match above_tolerance {
         None => format!("{pixels} of {of_pixels} pixels recomputed; no tolerance was asked for"),
         Some(0) if pixels == of_pixels => format!("all {pixels} pixels are within the tolerance"),
         Some(0) => {
-            let share = 100.0 * (1.0 - RISK.powf(1.0 / pixels as f64));
+            let share = 100.0 * share_unseen(pixels, RISK);
             let confidence = 100.0 * (1.0 - RISK);
             format!(
                 "0 of {pixels} above tolerance: fewer than {share:.2} % of all pixels, at {confidence:.0} % confidence"

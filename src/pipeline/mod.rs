@@ -34,7 +34,7 @@ pub use load::load;
 pub use measure::{StageTime, peak_memory_bytes};
 pub use sidecar::Sidecar;
 pub use stack::{StackOutcome, StackSidecar, composite};
-pub use study::{study, write_study};
+pub use study::{VtkPeer, study, write_study};
 
 use measure::Stopwatch;
 use sidecar::Made;

@@ -22,8 +22,8 @@ pub enum IntegrateSpec {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AutoSpec {
-    /// Largest error of a channel of a pixel, linear and premultiplied, on random pixels; above 0 and below 1. 1/255 by
-    /// default. Not together with `budget_ms`.
+    /// Largest error of a channel of a pixel, linear and premultiplied; above 0 and below 1. 1/255 by default. Kept by the
+    /// setting's bound, or, where it has none, kept to half on random pixels. Not together with `budget_ms`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// Time for integrating the picture, ms, above 0. Not together with `tolerance`.

@@ -13,8 +13,11 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::integrate::Schedule;
 use crate::plan::{Jitter, JitterKind, March, Method, SampleRule};
-use crate::scene::Scene;
+use crate::scene::{ClassifyAt, Scene};
 use crate::volume::Volume;
+
+/// How most choices are rendered.
+const MARCH: &str = "march at 1/2 voxel";
 
 /// Most rounds of the two.
 const MOST_ROUNDS: usize = 9;
@@ -95,9 +98,9 @@ fn choices<'a>(
     let march = March::plain(SampleRule::Midpoint, 0.5 * volume.grid().spacing_mm().min_element());
     let side =
         |method: Method| Side { volume, scene: scene.clone(), method, schedule: Schedule::default(), threads: None };
-    let exact = variants::exact(tolerance);
-    let mut choices = Vec::new();
-    for (by, method) in [("march at 1/2 voxel", Method::March(march)), ("exact", exact)] {
+    let methods = [(MARCH, Method::March(march)), ("exact", variants::exact(tolerance))];
+    let mut choices = of_the_march(march, side);
+    for (by, method) in methods {
         let mut add = |name, without, with| choices.push(Choice { name, by, sides: [without, with] });
         if let Some([unlit, lit]) = variants::by_shading(volume, scene) {
             add("shading", Side { scene: unlit, ..side(method) }, Side { scene: lit, ..side(method) });
@@ -114,21 +117,28 @@ fn choices<'a>(
         let single = Side { threads: Some(one_thread), ..side(method) };
         add("all threads instead of one", single, side(method));
     }
-    let by = "march at 1/2 voxel";
+    // Last, since classifying all voxels takes longer than all else where there are many.
+    if scene.effects.classify == ClassifyAt::Samples && volume.rgba_encoding().is_none() {
+        for (by, method) in methods {
+            let at_voxels = Side { scene: variants::classified_at_voxels(scene), ..side(method) };
+            choices.push(Choice { name: "classification before interpolation", by, sides: [side(method), at_voxels] });
+        }
+    }
+    Ok(choices)
+}
+
+/// What only the march can do with or without.
+fn of_the_march<'a>(march: March, side: impl Fn(Method) -> Side<'a>) -> Vec<Choice<'a>> {
     let marching = |march: March| side(Method::March(march));
+    let choice = |name, without, with| Choice { name, by: MARCH, sides: [without, with] };
     let jittered = March { jitter: Some(Jitter { seed: 0, kind: JitterKind::White }), ..march };
     let terminated = March { termination_transmittance: 1.0 / 255.0, ..march };
     let plodding = Schedule { empty_space_skipping: false, ..Schedule::default() };
-    choices.extend([
-        Choice { name: "jitter", by, sides: [marching(march), marching(jittered)] },
-        Choice { name: "early termination at 1/255", by, sides: [marching(march), marching(terminated)] },
-        Choice {
-            name: "empty-space skipping",
-            by,
-            sides: [Side { schedule: plodding, ..marching(march) }, marching(march)],
-        },
-    ]);
-    Ok(choices)
+    vec![
+        choice("jitter", marching(march), marching(jittered)),
+        choice("early termination at 1/255", marching(march), marching(terminated)),
+        choice("empty-space skipping", Side { schedule: plodding, ..marching(march) }, marching(march)),
+    ]
 }
 
 /// Renders both sides in turns, the first of a round first in the next one last, and at least once.

@@ -31,6 +31,12 @@ impl Errors {
     }
 }
 
+/// The share of all pixels that may be wrong although none of `pixels` random ones is, at `1 - risk` confidence: if a share
+/// `p` were, all of them would be right with the chance `(1 - p)^pixels`. About `3 / pixels` for a risk of 0.05.
+pub fn share_unseen(pixels: usize, risk: f64) -> f64 {
+    if pixels == 0 { 1.0 } else { 1.0 - risk.powf(1.0 / pixels as f64) }
+}
+
 /// Largest difference over the channels of a pixel; a NaN counts as infinite.
 pub fn difference(found: [f32; 4], truth: [f64; 4]) -> f64 {
     let channels = found.iter().zip(truth).map(|(&found, truth)| (f64::from(found) - truth).abs());
@@ -50,6 +56,13 @@ mod tests {
         let rms = ((999.0 * 1e-6 + 0.25) / 1000.0f64).sqrt();
         assert!((found.rms - rms).abs() < 1e-12, "found {}, expected {rms}", found.rms);
         assert_eq!(Errors::of(Vec::new()).largest, 0.0, "of no pixels");
+    }
+
+    #[test]
+    fn what_a_sample_does_not_see_is_three_over_its_size() {
+        let found = share_unseen(1000, 0.05);
+        assert!((found - 0.003).abs() < 1e-5, "found {found}, expected about 3 in 1000");
+        assert_eq!(share_unseen(0, 0.05), 1.0, "no pixel was looked at");
     }
 
     #[test]

@@ -52,12 +52,14 @@ pub struct Rung {
     pub family: Family,
     /// How it is written in a pipeline, after `integrate:`.
     pub setting: String,
+    /// Its step in units of the smallest spacing, or its tolerance, as it is written.
+    pub fineness: String,
     /// What it is, resolved.
     pub method: Method,
 }
 
 /// Distances between samples in units of the smallest spacing, coarse to fine, as they are written.
-const STEPS: [(&str, f64); 7] =
+pub(super) const STEPS: [(&str, f64); 7] =
     [("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/2", 0.5), ("1/4", 0.25), ("1/8", 0.125), ("1/16", 0.0625)];
 
 /// Tolerances of the exact integrator, coarse to fine.
@@ -86,6 +88,7 @@ pub fn exact(tolerance: f64) -> Rung {
     Rung {
         family: Family::Exact,
         setting: format!("{{ exact: {{ tolerance: {written} }} }}"),
+        fineness: written,
         method: Method::Exact(Exact { tolerance }),
     }
 }
@@ -102,6 +105,7 @@ fn march(family: Family, written: &str, step_mm: f64) -> Rung {
     Rung {
         family,
         setting: format!("{{ march: {{ step_voxels: {written}, rule: {name}{jitter_written} }} }}"),
+        fineness: written.to_owned(),
         method: Method::March(March { jitter, ..March::plain(rule, step_mm) }),
     }
 }

@@ -19,6 +19,7 @@ mod costs;
 mod errors;
 mod front;
 mod ladder;
+mod peers;
 mod report;
 mod trial;
 mod truth;
@@ -32,9 +33,10 @@ pub use auto::{Choice, choose_method};
 pub use choose::{Candidate, Chosen, Target, choose};
 pub use climb::{LeftOut, Measurement};
 pub use costs::Cost;
-pub use errors::{Errors, difference};
+pub use errors::{Errors, difference, share_unseen};
 pub use front::pareto_front;
 pub use ladder::{Family, Rung, exact, ladder};
+pub use peers::{Peer, PeerMeasurement};
 pub use report::Report;
 
 use crate::error::Result;
@@ -49,6 +51,9 @@ use truth::Truth;
 /// Shares of the time: the oracle's of all of it, then that of the ladder and that of the choices of what is left.
 const ORACLE_SHARE: f64 = 0.25;
 const LADDER_SHARE: f64 = 0.6;
+
+/// Share that other programs take of what the ladder leaves, each.
+const PEER_SHARE: f64 = 0.4;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,6 +85,8 @@ pub struct Study {
     pub oracle_pixels: usize,
     /// The settings, in the order of the ladder.
     pub settings: Vec<Measurement>,
+    /// Other programs.
+    pub peers: Vec<PeerMeasurement>,
     /// Indices of the settings that no other beats in both time and largest error, by time.
     pub front: Vec<usize>,
     /// What each choice costs.
@@ -102,11 +109,17 @@ pub struct ErrorMap {
     pub figure: Image,
 }
 
-/// Measures the ladder and the choices on a scene.
+/// Measures the ladder, other programs and the choices on a scene.
 ///
 /// # Errors
-/// Those of the integrators, but for settings that do not apply to the scene: these are left out.
-pub fn study(volume: &Volume, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Result<Study> {
+/// Those of the integrators, but for settings that do not apply to the scene: these are left out. Those of other programs.
+pub fn study(
+    volume: &Volume,
+    scene: &Scene,
+    settings: &Settings,
+    peers: &mut [Box<dyn Peer>],
+    progress: Progress<'_>,
+) -> Result<Study> {
     let deadline = Deadline::after(settings.time);
     let tell = |what: &str| {
         let left = deadline.left().as_secs_f64() / settings.time.as_secs_f64().max(1e-9);
@@ -120,12 +133,20 @@ pub fn study(volume: &Volume, scene: &Scene, settings: &Settings, progress: Prog
         rungs.insert(0, asked);
     }
     let climbed = climb::climb((volume, scene), rungs, &truth, deadline.share(LADDER_SHARE), &tell)?;
+    let mut left_out = climbed.left_out;
+    let mut of_peers = Vec::new();
+    for peer in peers {
+        let spacing_mm = volume.grid().spacing_mm().min_element();
+        let (measured, too_late) =
+            peers::measure(peer.as_mut(), spacing_mm, &truth, deadline.share(PEER_SHARE), &tell)?;
+        of_peers.extend(measured);
+        left_out.extend(too_late);
+    }
     let points: Vec<[f64; 2]> = climbed.measured.iter().map(|m| [m.seconds, m.errors.largest]).collect();
     let volume_f32 = if settings.room_for_f32 { variants::as_f32(volume)? } else { None };
     let single = one_thread()?;
     let by = (settings.tolerance, &single);
     let (costs, too_late) = costs::costs((volume, scene), volume_f32.as_ref(), by, &truth, deadline, &tell)?;
-    let mut left_out = climbed.left_out;
     left_out.extend(too_late);
     tell("maps of errors");
     let maps = maps((volume, scene), &climbed.measured, climbed.finest, settings.tolerance)?;
@@ -136,6 +157,7 @@ pub fn study(volume: &Volume, scene: &Scene, settings: &Settings, progress: Prog
         oracle_pixels: truth.len(),
         front: pareto_front(&points),
         settings: climbed.measured,
+        peers: of_peers,
         costs,
         left_out,
         maps,

@@ -1,13 +1,16 @@
 //! A study as text, as tables for spreadsheets, as JSON and as a chart.
 
+mod chart;
+
 use std::fmt::Write;
 
-use super::{Family, LeftOut, Measurement, Study};
-use crate::chart::{LogLog, Series};
+use super::{LeftOut, Measurement, PeerMeasurement, Study};
+use crate::chart::LogLog;
 use crate::error::{Error, Fault, Result};
 
-/// Errors below this are drawn here: what rounding in f32 leaves is no matter of settings, and 0 is on no logarithmic axis.
-const LEAST_ERROR: f64 = 1e-8;
+/// What to know when other programs stand in the table.
+const PEERS_NOTE: &str = "\nOther programs: seconds of a frame without set-up, and errors against the same oracle. Lit, VTK's highlight \
+                          is Phong's where the scene's is Blinn's, and its errors include that.\n";
 
 /// Forms of a study.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +39,14 @@ impl Report<'_> {
             let [largest, most, rms] = [m.errors.largest, m.errors.of_999_in_1000, m.errors.rms].map(|e| self.error(e));
             let setting = format!("`{}`", m.rung.setting);
             line(&[mark.to_owned(), setting, seconds(m.seconds), m.repeats.to_string(), largest, most, rms]);
+        }
+        for m in &self.0.peers {
+            let [largest, most, rms] = [m.errors.largest, m.errors.of_999_in_1000, m.errors.rms].map(|e| self.error(e));
+            let setting = format!("{}, step {}", m.peer, m.step_voxels);
+            line(&[String::new(), setting, seconds(m.seconds), m.repeats.to_string(), largest, most, rms]);
+        }
+        if !self.0.peers.is_empty() {
+            text.push_str(PEERS_NOTE);
         }
         text.push_str(
             "\n## What each choice costs\n\nTwo pictures that differ in nothing else, rendered in turns.\n\n",
@@ -89,6 +100,13 @@ impl Report<'_> {
                 self.0.front.contains(&place)
             );
         }
+        for PeerMeasurement { peer, step_voxels, seconds, repeats, errors } in &self.0.peers {
+            let _ = writeln!(
+                text,
+                "\"step {step_voxels}\",\"{peer}\",{seconds},{repeats},,{},{:e},{:e},{:e},,false",
+                errors.pixels, errors.largest, errors.of_999_in_1000, errors.rms
+            );
+        }
         text
     }
 
@@ -120,22 +138,7 @@ impl Report<'_> {
 
     /// Largest error against seconds, with the Pareto front and the tolerance.
     pub fn chart(&self) -> LogLog {
-        let point = |m: &Measurement| [m.seconds, m.errors.largest.max(LEAST_ERROR)];
-        let series = Family::ALL.map(|family| {
-            let of_family = self.0.settings.iter().filter(|m| m.rung.family == family);
-            let mut points: Vec<[f64; 2]> = of_family.map(point).collect();
-            points.sort_by(|a, b| b[1].total_cmp(&a[1]));
-            Series { name: family.name().to_owned(), points }
-        });
-        let front = self.0.front.iter().filter_map(|&place| self.0.settings.get(place)).map(point).collect();
-        LogLog {
-            title: "Accuracy against time".to_owned(),
-            x_label: "seconds per picture".to_owned(),
-            y_label: format!("largest error of {} pixels", self.0.oracle_pixels),
-            series: series.into_iter().filter(|series| !series.points.is_empty()).collect(),
-            front: Some(Series { name: "Pareto front".to_owned(), points: front }),
-            level: Some(("tolerance".to_owned(), self.0.tolerance)),
-        }
+        chart::of(self.0)
     }
 }
 

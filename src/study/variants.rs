@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::plan::{Exact, Method};
-use crate::scene::{ClassifyAt, Light, Model, Scene, Shading};
+use crate::scene::{ClassifyAt, Effects, Light, Model, Scene, Shading};
 use crate::transfer::{Term, TransferFunction, Weight};
 use crate::volume::{Samples, Volume};
 
@@ -54,6 +54,12 @@ pub(super) fn by_dimensions(volume: &Volume, scene: &Scene) -> Result<Option<[Sc
         true => [with(None)?, scene.clone()],
         false => [scene.clone(), with(Some(everywhere))?],
     }))
+}
+
+/// The scene with colours interpolated between classified voxels, in place of values between voxels.
+pub(super) fn classified_at_voxels(scene: &Scene) -> Scene {
+    let effects = Effects { classify: ClassifyAt::Voxels, ..scene.effects.clone() };
+    Scene { effects, ..scene.clone() }
 }
 
 /// The same view in a picture of half the width and height.

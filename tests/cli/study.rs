@@ -19,6 +19,15 @@ fn a_study_is_a_folder_of_tables_charts_and_maps() {
 }
 
 #[test]
+fn a_python_without_vtk_is_said_before_anything_is_measured() {
+    let folder = Folder::new("study-without-vtk");
+    let (pipeline, out) = (folder.pipeline(), folder.path("out"));
+    let run = pellucid(&["study", &pipeline, "-o", &out, "--peers", "vtk", "--python", "no-such-python"]).failure(4);
+    assert!(run.stderr.contains("no-such-python") && run.stderr.contains("--python"), "found {}", run.stderr);
+    assert!(!std::path::Path::new(&out).exists(), "nothing is written");
+}
+
+#[test]
 fn arguments_of_a_study_that_mean_nothing_are_refused() {
     for wrong in [["--tolerance", "0"], ["--tolerance", "1"], ["--seconds", "-1"], ["--pixels", "0"]] {
         let argument = format!("{}={}", wrong[0], wrong[1]);

@@ -52,15 +52,17 @@ impl LiveVtk {
             Mapper::Gpu => "gpu",
             Mapper::Cpu => "cpu",
         };
-        let remedy = "name a Python that has vtk and numpy with --python; README.md says how to make one";
         let ran = Command::new(&self.python).arg(script).args(["--mapper", mapper, "--output"]).arg(&output).output();
         let ran = ran.map_err(|cause| {
-            Error::new(Fault::Input, "Python cannot be run").at(&self.python).remedy(remedy).caused_by(cause)
+            Error::new(Fault::Input, "Python cannot be run").at(&self.python).remedy(vtk::REMEDY).caused_by(cause)
         })?;
         if !ran.status.success() || !output.exists() {
             let said = String::from_utf8_lossy(&ran.stderr);
             let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing").to_string();
-            return Err(Error::new(Fault::Input, "VTK made no picture").at(&self.python).found(last).remedy(remedy));
+            return Err(Error::new(Fault::Input, "VTK made no picture")
+                .at(&self.python)
+                .found(last)
+                .remedy(vtk::REMEDY));
         }
         Ok(picture::read(&output)?.image)
     }

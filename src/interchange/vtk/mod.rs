@@ -9,6 +9,7 @@
 
 mod blend;
 mod frame;
+mod frames;
 mod scene;
 
 use std::fs;
@@ -23,8 +24,13 @@ use crate::volume::Volume;
 use blend::Blend;
 use frame::Frame;
 
+pub use frames::{Frames, Mapper};
+
 /// The script, the same for every scene.
 pub const SCRIPT: &str = include_str!("render.py");
+
+/// What to do where there is no VTK.
+pub const REMEDY: &str = "name a Python that has vtk and numpy with --python; README.md says how to make one";
 
 /// Entries of the table where the plan has none: VTK's textures are of powers of two, 1024 at least.
 const TABLE: Table = Table { values: 4096, gradients: 1024, uncorrected_opacity: 1e-4 };

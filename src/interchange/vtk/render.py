@@ -4,10 +4,11 @@
     python render.py                       a picture.png beside the script, sRGB, as VTK displays it
     python render.py --output picture.npy  linear premultiplied RGBA in f32, top row first, free of 8-bit rounding
     python render.py --mapper cpu          by the fixed-point mapper (transfer functions of the value alone)
+    python render.py --frames              one frame for each line `STEP_MM [FILE.npy]` on stdin, with its seconds on stdout
     python render.py --show                in a window
 
-scene.json has the camera, the lights, the grid, the step, the blend mode and what is clipped; the arrays have the values,
-the transfer function (straight linear colour, and extinction per mm when compositing, else opacity) and, for 2D transfer
+scene.json has the camera, the lights, the grid, the step, the blend mode and what is clipped; the arrays have the values
+(of any type that VTK knows), the transfer function (straight linear colour, and extinction per mm when compositing, else opacity) and, for 2D transfer
 functions, the gradient magnitude.
 """
 
@@ -16,6 +17,10 @@ import ctypes
 import json
 import os
 import pathlib
+import resource
+import sys
+import time
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -24,6 +29,8 @@ arguments.add_argument("--output", type=pathlib.Path)
 arguments.add_argument("--mapper", choices=("gpu", "cpu"), default="gpu")
 arguments.add_argument("--step-mm", type=float, help="distance between samples in place of the scene's")
 arguments.add_argument("--bits", type=int, choices=(8, 32), default=32, help="of the buffer that VTK draws into")
+arguments.add_argument("--threads", type=int, help="of the fixed-point mapper; as many as there are cores unless told")
+arguments.add_argument("--frames", action="store_true", help="render frame after frame, and say how long each took")
 arguments.add_argument("--show", action="store_true", help="open a window")
 arguments.add_argument("--facts", action="store_true", help="print versions and settings as JSON")
 arguments = arguments.parse_args()
@@ -53,6 +60,8 @@ from vtkmodules.vtkRenderingVolumeOpenGL2 import vtkOpenGLGPUVolumeRayCastMapper
 
 # Lengths along a ray in which the table's opacities are given.
 UNIT_MM = 1.0
+# VTK reads numpy's own memory, which must outlive it.
+KEPT = []
 
 here = pathlib.Path(__file__).resolve().parent
 scene = json.loads((here / "scene.json").read_text())
@@ -76,14 +85,16 @@ def image(upside_down):
     data.SetSpacing(scene["spacing_mm"])
     arrays = [("values", values)] + ([("gradient_magnitude", load("gradient_magnitude"))] if two_d else [])
     for name, array in arrays:
-        array = numpy_to_vtk(array.ravel(), deep=True)
+        flat = np.ascontiguousarray(array).ravel()
+        KEPT.append(flat)
+        array = numpy_to_vtk(flat, deep=False)
         array.SetName(name)
         data.GetPointData().AddArray(array)
     data.GetPointData().SetActiveScalars("values")
     return data, (float(values.min()), float(values.max()))
 
 
-def transfer_function(appearance, value_range):
+def transfer_function(appearance, value_range, step_mm):
     table = load("transfer_function").astype(np.float64)
     color, extinction = table[..., :3], table[..., 3]
     if two_d:
@@ -188,6 +199,8 @@ def mapper(data):
             ray_cast.SetTransfer2DYAxisArray("gradient_magnitude")
     else:
         ray_cast.SetInteractiveSampleDistance(step_mm)
+        if arguments.threads:
+            ray_cast.SetNumberOfThreads(arguments.threads)
     return ray_cast
 
 
@@ -282,12 +295,12 @@ def refuse():
         raise SystemExit(f"VTK's fixed-point mapper has no equal of the blend mode {blend['mode']}")
 
 
-def rendered(upside_down=False):
-    """VTK's pixels, the range of the values, and what made them."""
+def view(upside_down=False):
+    """Everything that is set up before the first frame."""
     data, value_range = image(upside_down)
     appearance = vtkVolumeProperty()
     appearance.SetInterpolationTypeToLinear()
-    transfer_function(appearance, value_range)
+    transfer_function(appearance, value_range, step_mm)
     shading = scene["shading"]
     appearance.SetShade(shading is not None)
     if shading:
@@ -318,30 +331,83 @@ def rendered(upside_down=False):
     window.SetOffScreenRendering(not arguments.show)
     window.AddRenderer(renderer)
     aim(renderer.GetActiveCamera(), volume.GetBounds())
+    # The window itself is made without the volume, so that the first frame is the volume's.
+    volume.VisibilityOff()
+    window.Render()
+    volume.VisibilityOn()
     texture = None
     if arguments.bits == 32 and arguments.mapper == "gpu" and not arguments.show:
-        volume.VisibilityOff()
-        window.Render()
-        volume.VisibilityOn()
         texture = float_buffer(window)
-    window.Render()
+    return SimpleNamespace(
+        value_range=value_range, appearance=appearance, ray_cast=ray_cast, window=window, texture=texture
+    )
+
+
+def rendered(upside_down=False):
+    """VTK's pixels, the range of the values, and what made them."""
+    shown = view(upside_down)
+    shown.window.Render()
     if arguments.show:
         interactor = vtkRenderWindowInteractor()
-        interactor.SetRenderWindow(window)
+        interactor.SetRenderWindow(shown.window)
         interactor.Start()
         raise SystemExit
+    return pixels(shown), shown.value_range, shown.ray_cast, shown.window
 
-    return pixels_of(window, ray_cast, texture)[::-1].astype(np.float64), value_range, ray_cast, window
+
+def pixels(shown):
+    return pixels_of(shown.window, shown.ray_cast, shown.texture)[::-1].astype(np.float64)
+
+
+def over_background(pixels):
+    if scene["background"] is not None:
+        pixels[..., :3] += (1 - pixels[..., 3:]) * np.array(scene["background"])
+        pixels[..., 3] = 1
+    return pixels.astype(np.float32)
+
+
+def seconds_of(work):
+    begun = time.perf_counter()
+    result = work()
+    return time.perf_counter() - begun, result
+
+
+def say(**facts):
+    peak_memory_bytes = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    print(json.dumps({**facts, "peak_memory_bytes": peak_memory_bytes}), flush=True)
+
+
+def frames():
+    """Frames on demand. The first one, in which VTK prepares what it keeps, is rendered at once and not among them."""
+    load_seconds, shown = seconds_of(view)
+
+    def frame():
+        shown.window.Render()
+        shown.window.WaitForCompletion()
+
+    first_seconds, _ = seconds_of(frame)
+    say(vtk=vtkVersion.GetVTKVersion(), load_seconds=load_seconds, first_frame_seconds=first_seconds)
+    for line in sys.stdin:
+        step, *output = line.rstrip("\n").split(" ", 1)
+        shown.ray_cast.SetSampleDistance(float(step))
+        if two_d:
+            transfer_function(shown.appearance, shown.value_range, float(step))
+        if arguments.mapper == "cpu":
+            shown.ray_cast.SetInteractiveSampleDistance(float(step))
+        seconds, _ = seconds_of(frame)
+        if output:
+            write(pathlib.Path(output[0]), over_background(pixels(shown)))
+        say(seconds=seconds)
 
 
 def main():
     refuse()
+    if arguments.frames:
+        frames()
+        return
     pixels, ray_cast, window = picture()
-    if scene["background"] is not None:
-        pixels[..., :3] += (1 - pixels[..., 3:]) * np.array(scene["background"])
-        pixels[..., 3] = 1
     path = arguments.output or here / "picture.png"
-    write(path, pixels.astype(np.float32))
+    write(path, over_background(pixels))
     if arguments.facts:
         lines = [line.split(": ", 1) for line in window.ReportCapabilities().split("\n") if "OpenGL" in line]
         capabilities = {line[0].strip(): line[1].strip() for line in lines if len(line) == 2}

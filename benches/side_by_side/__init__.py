@@ -1,0 +1,1 @@
+"""What `peers.py` is made of: scenes, programs, measurements and the report."""
