@@ -29,8 +29,9 @@ def holds(what, found, expected, within):
         failures.append(what)
 
 
-def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, mapper="gpu", dims=(N, N, N), rewrite=None, **scene):
-    """VTK's picture of a box seen along +x by parallel rays; its middle pixel's ray is 8 mm long."""
+def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, mapper="gpu", dims=(N, N, N), edits=(), **scene):
+    """VTK's picture of a box seen along +x by parallel rays; its middle pixel's ray is 8 mm long. Of the script, each of
+    the edits' first is replaced by its second."""
     z, y, x = np.meshgrid(*[np.arange(n, dtype=np.float32) for n in reversed(dims)], indexing="ij")
     values = {None: y, "x": x}.get(values, values) if isinstance(values, (str, type(None))) else values(x, y, z)
     extinction = np.atleast_2d(np.asarray(extinction_per_mm, np.float32))
@@ -67,8 +68,9 @@ def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, map
             np.save(folder / "gradient_magnitude.npy", gradient(x, y, z).astype(np.float32))
         (folder / "scene.json").write_text(json.dumps(described))
         script = SCRIPT.read_text()
-        if rewrite is not None:
-            script = script.replace("SetSampleDistance(step_mm)", f"SetSampleDistance({rewrite})")
+        for old, new in edits:
+            assert old in script, f"the script has {old}"
+            script = script.replace(old, new)
         (folder / "render.py").write_text(script)
         render_vtk(folder, mapper, folder / "picture.npy")
         return np.load(folder / "picture.npy")[2, 2].astype(np.float64)
@@ -126,7 +128,7 @@ def gradients():
 
 def uncorrected_2d():
     """Optical depth at steps of 0.35 mm over that at 0.7 mm, of the opacities that the script corrects for 0.7 mm."""
-    depth = [-np.log1p(-box(np.full((2, 2), 0.05), 0.7, gradient=lambda x, y, z: z, rewrite=step)[3]) for step in (0.7, 0.35)]
+    depth = [-np.log1p(-box(np.full((2, 2), 0.05), 0.7, gradient=lambda x, y, z: z, edits=[("SetSampleDistance(step_mm)", f"SetSampleDistance({step})")])[3]) for step in (0.7, 0.35)]
     return depth[1] / depth[0]
 
 
@@ -251,6 +253,36 @@ def blend_modes():
 def fixed_point():
     found = box([0.05, 0.05], 1.0, mapper="cpu")[3]
     holds("the CPU mapper counts in 1/32767", found * 32767, round(found * 32767), 1e-3)
+    holds("it takes no sample where the ray leaves the box: 7 of 1 mm", found, absorbed(0.05, 7), 1e-3)
+    # As if the script knew of nothing that the mapper cannot draw, nor of windows.
+    anyway = [("    refuse()\n", ""), ('blend["mode"] == "average"', "False"), ('blend["mode"] == "additive"', "False")]
+    composited = 1 - (1 - 0.1) ** 15
+    sums = box(np.full(2, 0.1), 0.5, mapper="cpu", blend={"mode": "additive"}, edits=anyway)[3]
+    holds("the CPU mapper has no sums: they are composited, by opacities not corrected for the step", sums, composited, 1e-3)
+    nothing = ('picture.GetImage().split("_")[1]', '(picture.GetImage() or "_0").split("_")[1]')
+    blank = ("from_address(address)", "from_address(address) if address else (ctypes.c_uint16 * (4 * memory[0] * memory[1]))()")
+    for mode in ("average", "isosurface"):
+        drawn = box(np.full(2, 0.5), 1.0, mapper="cpu", blend={"mode": mode, "levels": [4.5]}, values="x", edits=[*anyway, nothing, blank])
+        holds(f"the CPU mapper draws nothing of blend mode {mode}", drawn, np.zeros(4), 0.0)
+    gradient_opacity()
+
+
+def gradient_opacity():
+    """An opacity by the CPU mapper's own gradient magnitudes: where it steps from 0 to 1, a ramp of known slope tells."""
+
+    def shown(slope, edge_per_mm, spacing_mm):
+        # Values are of voxels, 1/spacing of them per mm; the range has to hold the slope four times.
+        ramp = lambda x, y, z: slope * spacing_mm[1] * y + 1000 * ((x == 0) & (y == 0) & (z == 0))  # noqa: E731
+        rows = np.where(np.linspace(0, 2 * edge_per_mm, 1024)[:, None] < edge_per_mm, 0.0, 0.1) * np.ones((1, 1024))
+        # The range of the magnitudes given is the axis of the table.
+        axis = lambda x, y, z: 2 * edge_per_mm * x / (N - 1)  # noqa: E731
+        return box(rows, 1.0, values=ramp, gradient=axis, mapper="cpu", spacing_mm=spacing_mm)[3]
+
+    for spacing_mm in ([1, 1, 1], [1, 1, 2.5]):
+        # Seven samples of 0.1 each, or none, a tenth to either side of the edge.
+        found = [shown(40, edge_per_mm, spacing_mm) for edge_per_mm in (36, 44)]
+        what = f"the CPU mapper has opacities by gradient magnitude, times the mean of spacings of {spacing_mm} mm"
+        holds(what, found, [absorbed(0.1, 7), 0], 1e-3)
 
 
 def rounding(pellucid):

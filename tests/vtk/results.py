@@ -12,7 +12,7 @@ import pathlib
 import sys
 import tempfile
 
-from bridge import HERE, Pellucid, mappers, render_vtk, scenes
+from bridge import HERE, MAPPERS, Pellucid, render_vtk, scenes
 
 STEP = "step_voxels: {step}"
 # Each with the conventions of those before it.
@@ -52,9 +52,11 @@ def measure(pellucid, scene, folder):
         for i, (_, settings) in enumerate(conventions)
     ]
     live = {}
-    for mapper in mappers(exported):
-        live[mapper] = folder / f"{mapper}.npy"
-        facts = render_vtk(folder, mapper, live[mapper])
+    for mapper in MAPPERS:
+        picture = folder / f"{mapper}.npy"
+        facts = render_vtk(folder, mapper, picture)
+        if facts is not None:
+            live[mapper] = picture
         if mapper == "gpu":
             measure.facts = facts
     live["gpu8"] = folder / "gpu8.npy"
