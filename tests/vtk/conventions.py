@@ -7,6 +7,7 @@
 """
 
 import json
+import os
 import pathlib
 import sys
 import tempfile
@@ -78,6 +79,11 @@ def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, map
 
 def absorbed(extinction_per_mm, mm):
     return -np.expm1(-extinction_per_mm * mm)
+
+
+def encoded(linear):
+    """Linear light as sRGB."""
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
 
 
 def sampling():
@@ -253,7 +259,14 @@ def blend_modes():
 def fixed_point():
     found = box([0.05, 0.05], 1.0, mapper="cpu")[3]
     holds("the CPU mapper counts in 1/32767", found * 32767, round(found * 32767), 1e-3)
-    holds("it takes no sample where the ray leaves the box: 7 of 1 mm", found, absorbed(0.05, 7), 1e-3)
+    holds("it takes no sample where the ray meets or leaves the box: 7 of 1 mm", found, absorbed(0.05, 7), 1e-3)
+    # The script puts the near plane 8 mm in front of the box.
+    for step in (0.7, 2.5, 3.9, 4.1, 7.9):
+        inside = [k * step - 8 for k in range(30) if 0 < k * step - 8 < 8]
+        ends = [box_of_values(mode, step, mapper="cpu")[0] for mode in ("minimum", "maximum")]
+        found = [8 * end for end in ends]
+        holds(f"its samples are whole steps of {step} mm from the near plane, not from the box", found, [inside[0], inside[-1]], 3e-3)
+    holds("so a ray that is shorter than a step may have none", box([0.05, 0.05], 16.5, mapper="cpu")[3], 0, 0)
     # As if the script knew of nothing that the mapper cannot draw, nor of windows.
     anyway = [("    refuse()\n", ""), ('blend["mode"] == "average"', "False"), ('blend["mode"] == "additive"', "False")]
     composited = 1 - (1 - 0.1) ** 15
@@ -265,6 +278,41 @@ def fixed_point():
         drawn = box(np.full(2, 0.5), 1.0, mapper="cpu", blend={"mode": mode, "levels": [4.5]}, values="x", edits=[*anyway, nothing, blank])
         holds(f"the CPU mapper draws nothing of blend mode {mode}", drawn, np.zeros(4), 0.0)
     gradient_opacity()
+    normals_on_the_cpu()
+
+
+def box_of_values(mode, step_mm, **more):
+    """The least or largest value along x that samples met, as a share of 8 mm in sRGB, and alpha."""
+    projection = {"mode": mode, "opacity": 1.0, "window": [0.0, 8.0]}
+    colors = np.linspace(0, 1, 4097)[:, None]
+    linear, _, _, alpha = box(np.ones(4097), step_mm, values="x", colors=colors, blend=projection, **more)
+    return linear, alpha
+
+
+def normals_on_the_cpu():
+    """Where shading happens: the normal at the middle between two voxels, one lit and one at a right angle to the light."""
+    lights = [{"towards": [0, 1, 0], "color": [1, 1, 1]}]
+    shading = {"ambient": 0, "diffuse": 1, "specular": 0, "shininess": 1, "two_sided": True, "lights": lights}
+
+    def lit(values, **more):
+        red, _, _, alpha = box([0.05, 0.05], 1.0, values=values, mapper="cpu", shading=shading, **more)
+        return red / alpha
+
+    def bend(x, y, z):
+        """Along z up to z = 4, along y from z = 5 on, at y = 4."""
+        along_z = np.select([z <= 5, z == 6], [10 * (z - 3), 10], 10)
+        return np.where(z <= 4, 0, 10) * (y - 4) + along_z
+
+    holds("the CPU mapper shades at the voxels and interpolates that: between light 0 and 1", lit(bend, dims=(N, N, N + 1)), 0.5, 0.02)
+    rng = np.random.default_rng(5)
+    off = []
+    for normal in rng.normal(size=(12, 3)):
+        normal /= np.linalg.norm(normal)
+        ramp = lambda x, y, z: normal[0] * x + normal[1] * y + normal[2] * z  # noqa: B023, E731
+        # It lies on the viewer's side, who is at -x.
+        off.append(abs(lit(ramp) - max(0.0, -np.sign(normal[0]) * normal[1])))
+    holds("by encoded normals turned to the viewer, lit from one side: cosines of 12 directions", np.max(off), 0.0, 0.02)
+    assert np.max(off) > 1e-4, "the experiment sees the encoding"
 
 
 def gradient_opacity():
@@ -349,6 +397,8 @@ def march(described, folder, column, row, kind):
 
 
 def main():
+    # Also for VTK in this process, whose window is not the script's.
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     for experiment in (sampling, opacity, textures, gradients, lights, clipping, blend_modes, fixed_point):
         experiment()
     if len(sys.argv) > 1:
