@@ -64,10 +64,29 @@ fn what_cannot_be_compared_is_said() {
     let a = picture(&folder, "a.png", 0.0);
     let small = folder.path("small.png");
     png::write(small.as_ref(), &Image::transparent(3, 3), Depth::Eight, &[]).expect("the folder is writable");
-    pellucid(&["compare", &a, &small]).failure(4).says(&["same size", "3 x 3"]);
+    pellucid(&["compare", &a, &small]).failure(4).says(&["small.png", "same size", "3 x 3"]);
+    pellucid(&["compare", &a, "--vtk"]).failure(3).says(&["a.png", "pipelines, not pictures"]);
     pellucid(&["compare", &a, &folder.path("a.gif")]).failure(4).says(&[".png, .exr or .npy"]);
     assert_eq!(pellucid(&["compare", &a]).code, Some(2), "one picture is not two");
     let pipeline = folder.pipeline();
     let nowhere = pellucid(&["compare", &pipeline, "--vtk", "--python", "/nowhere/python"]);
     nowhere.failure(4).says(&["Python cannot be run", "--python"]);
+}
+
+/// A Python without VTK, and one in which a mapper of VTK has no equal of the scene, as the exported script says it.
+#[cfg(unix)]
+#[test]
+fn what_python_says_is_passed_on() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new("compare_python");
+    let pipeline = folder.pipeline();
+    let python = folder.path("python");
+    for (exit, said, fault, remedy) in
+        [(1, "No module named 'vtk'", 4, "--python"), (3, "no 2D transfer functions", 5, "--mapper gpu")]
+    {
+        std::fs::write(&python, format!("#!/bin/sh\necho \"{said}\" >&2\nexit {exit}\n")).expect("writable");
+        std::fs::set_permissions(&python, PermissionsExt::from_mode(0o755)).expect("ours");
+        let refused = pellucid(&["compare", &pipeline, "--vtk", "--mapper", "cpu", "--python", &python]);
+        refused.failure(fault).says(&[said, remedy]);
+    }
 }

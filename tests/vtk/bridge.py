@@ -13,6 +13,9 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 REFERENCES = HERE / "references"
 ROOT = HERE.parent.parent
+MAPPERS = ("gpu", "cpu")
+# What the exported script ends with where a mapper cannot draw a scene.
+UNSUPPORTED = 3
 
 
 class Scene:
@@ -70,16 +73,12 @@ class Pellucid:
 
 
 def render_vtk(folder, mapper, output, *arguments):
-    """Runs the exported script in this Python; returns what it says of versions and settings."""
+    """Runs the exported script in this Python; returns what it says of versions and settings, nothing if the mapper has no
+    equal of the scene."""
     command = [sys.executable, folder / "render.py", "--mapper", mapper, "--output", output, "--facts", *arguments]
     ran = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    if ran.returncode == UNSUPPORTED:
+        return None
     if ran.returncode != 0 or not output.exists():
         raise SystemExit(f"{folder.name}: VTK made no picture\n{ran.stderr}")
     return json.loads(ran.stdout.strip().splitlines()[-1])
-
-
-def mappers(exported):
-    """The mappers that can draw a scene: the fixed-point mapper has no 2D transfer functions, averages or surfaces."""
-    reads_value = exported["transfer_function"]["dimensions"] == 1
-    shared = exported["blend"]["mode"] in ("composite", "maximum", "minimum")
-    return ("gpu", "cpu") if reads_value and shared else ("gpu",)

@@ -7,6 +7,7 @@
 """
 
 import json
+import os
 import pathlib
 import sys
 import tempfile
@@ -29,8 +30,9 @@ def holds(what, found, expected, within):
         failures.append(what)
 
 
-def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, mapper="gpu", dims=(N, N, N), rewrite=None, **scene):
-    """VTK's picture of a box seen along +x by parallel rays; its middle pixel's ray is 8 mm long."""
+def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, mapper="gpu", dims=(N, N, N), edits=(), **scene):
+    """VTK's picture of a box seen along +x by parallel rays; its middle pixel's ray is 8 mm long. Of the script, each of
+    the edits' first is replaced by its second."""
     z, y, x = np.meshgrid(*[np.arange(n, dtype=np.float32) for n in reversed(dims)], indexing="ij")
     values = {None: y, "x": x}.get(values, values) if isinstance(values, (str, type(None))) else values(x, y, z)
     extinction = np.atleast_2d(np.asarray(extinction_per_mm, np.float32))
@@ -67,8 +69,9 @@ def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, map
             np.save(folder / "gradient_magnitude.npy", gradient(x, y, z).astype(np.float32))
         (folder / "scene.json").write_text(json.dumps(described))
         script = SCRIPT.read_text()
-        if rewrite is not None:
-            script = script.replace("SetSampleDistance(step_mm)", f"SetSampleDistance({rewrite})")
+        for old, new in edits:
+            assert old in script, f"the script has {old}"
+            script = script.replace(old, new)
         (folder / "render.py").write_text(script)
         render_vtk(folder, mapper, folder / "picture.npy")
         return np.load(folder / "picture.npy")[2, 2].astype(np.float64)
@@ -76,6 +79,11 @@ def box(extinction_per_mm, step_mm, values=None, gradient=None, colors=None, map
 
 def absorbed(extinction_per_mm, mm):
     return -np.expm1(-extinction_per_mm * mm)
+
+
+def encoded(linear):
+    """Linear light as sRGB."""
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
 
 
 def sampling():
@@ -126,7 +134,7 @@ def gradients():
 
 def uncorrected_2d():
     """Optical depth at steps of 0.35 mm over that at 0.7 mm, of the opacities that the script corrects for 0.7 mm."""
-    depth = [-np.log1p(-box(np.full((2, 2), 0.05), 0.7, gradient=lambda x, y, z: z, rewrite=step)[3]) for step in (0.7, 0.35)]
+    depth = [-np.log1p(-box(np.full((2, 2), 0.05), 0.7, gradient=lambda x, y, z: z, edits=[("SetSampleDistance(step_mm)", f"SetSampleDistance({step})")])[3]) for step in (0.7, 0.35)]
     return depth[1] / depth[0]
 
 
@@ -251,6 +259,78 @@ def blend_modes():
 def fixed_point():
     found = box([0.05, 0.05], 1.0, mapper="cpu")[3]
     holds("the CPU mapper counts in 1/32767", found * 32767, round(found * 32767), 1e-3)
+    holds("it takes no sample where the ray meets or leaves the box: 7 of 1 mm", found, absorbed(0.05, 7), 1e-3)
+    # The script puts the near plane 8 mm in front of the box.
+    for step in (0.7, 2.5, 3.9, 4.1, 7.9):
+        inside = [k * step - 8 for k in range(30) if 0 < k * step - 8 < 8]
+        ends = [box_of_values(mode, step, mapper="cpu")[0] for mode in ("minimum", "maximum")]
+        found = [8 * end for end in ends]
+        holds(f"its samples are whole steps of {step} mm from the near plane, not from the box", found, [inside[0], inside[-1]], 3e-3)
+    holds("so a ray that is shorter than a step may have none", box([0.05, 0.05], 16.5, mapper="cpu")[3], 0, 0)
+    # As if the script knew of nothing that the mapper cannot draw, nor of windows.
+    anyway = [("    refuse()\n", ""), ('blend["mode"] == "average"', "False"), ('blend["mode"] == "additive"', "False")]
+    composited = 1 - (1 - 0.1) ** 15
+    sums = box(np.full(2, 0.1), 0.5, mapper="cpu", blend={"mode": "additive"}, edits=anyway)[3]
+    holds("the CPU mapper has no sums: they are composited, by opacities not corrected for the step", sums, composited, 1e-3)
+    nothing = ('picture.GetImage().split("_")[1]', '(picture.GetImage() or "_0").split("_")[1]')
+    blank = ("from_address(address)", "from_address(address) if address else (ctypes.c_uint16 * (4 * memory[0] * memory[1]))()")
+    for mode in ("average", "isosurface"):
+        drawn = box(np.full(2, 0.5), 1.0, mapper="cpu", blend={"mode": mode, "levels": [4.5]}, values="x", edits=[*anyway, nothing, blank])
+        holds(f"the CPU mapper draws nothing of blend mode {mode}", drawn, np.zeros(4), 0.0)
+    gradient_opacity()
+    normals_on_the_cpu()
+
+
+def box_of_values(mode, step_mm, **more):
+    """The least or largest value along x that samples met, as a share of 8 mm in sRGB, and alpha."""
+    projection = {"mode": mode, "opacity": 1.0, "window": [0.0, 8.0]}
+    colors = np.linspace(0, 1, 4097)[:, None]
+    linear, _, _, alpha = box(np.ones(4097), step_mm, values="x", colors=colors, blend=projection, **more)
+    return linear, alpha
+
+
+def normals_on_the_cpu():
+    """Where shading happens: the normal at the middle between two voxels, one lit and one at a right angle to the light."""
+    lights = [{"towards": [0, 1, 0], "color": [1, 1, 1]}]
+    shading = {"ambient": 0, "diffuse": 1, "specular": 0, "shininess": 1, "two_sided": True, "lights": lights}
+
+    def lit(values, **more):
+        red, _, _, alpha = box([0.05, 0.05], 1.0, values=values, mapper="cpu", shading=shading, **more)
+        return red / alpha
+
+    def bend(x, y, z):
+        """Along z up to z = 4, along y from z = 5 on, at y = 4."""
+        along_z = np.select([z <= 5, z == 6], [10 * (z - 3), 10], 10)
+        return np.where(z <= 4, 0, 10) * (y - 4) + along_z
+
+    holds("the CPU mapper shades at the voxels and interpolates that: between light 0 and 1", lit(bend, dims=(N, N, N + 1)), 0.5, 0.02)
+    rng = np.random.default_rng(5)
+    off = []
+    for normal in rng.normal(size=(12, 3)):
+        normal /= np.linalg.norm(normal)
+        ramp = lambda x, y, z: normal[0] * x + normal[1] * y + normal[2] * z  # noqa: B023, E731
+        # It lies on the viewer's side, who is at -x.
+        off.append(abs(lit(ramp) - max(0.0, -np.sign(normal[0]) * normal[1])))
+    holds("by encoded normals turned to the viewer, lit from one side: cosines of 12 directions", np.max(off), 0.0, 0.02)
+    assert np.max(off) > 1e-4, "the experiment sees the encoding"
+
+
+def gradient_opacity():
+    """An opacity by the CPU mapper's own gradient magnitudes: where it steps from 0 to 1, a ramp of known slope tells."""
+
+    def shown(slope, edge_per_mm, spacing_mm):
+        # Values are of voxels, 1/spacing of them per mm; the range has to hold the slope four times.
+        ramp = lambda x, y, z: slope * spacing_mm[1] * y + 1000 * ((x == 0) & (y == 0) & (z == 0))  # noqa: E731
+        rows = np.where(np.linspace(0, 2 * edge_per_mm, 1024)[:, None] < edge_per_mm, 0.0, 0.1) * np.ones((1, 1024))
+        # The range of the magnitudes given is the axis of the table.
+        axis = lambda x, y, z: 2 * edge_per_mm * x / (N - 1)  # noqa: E731
+        return box(rows, 1.0, values=ramp, gradient=axis, mapper="cpu", spacing_mm=spacing_mm)[3]
+
+    for spacing_mm in ([1, 1, 1], [1, 1, 2.5]):
+        # Seven samples of 0.1 each, or none, a tenth to either side of the edge.
+        found = [shown(40, edge_per_mm, spacing_mm) for edge_per_mm in (36, 44)]
+        what = f"the CPU mapper has opacities by gradient magnitude, times the mean of spacings of {spacing_mm} mm"
+        holds(what, found, [absorbed(0.1, 7), 0], 1e-3)
 
 
 def rounding(pellucid):
@@ -271,6 +351,12 @@ def rounding(pellucid):
                         continue
                     exact, added = (march(described, folder, column, row, kind) for kind in (np.float64, np.float32))
                     off.append([255 * np.abs(ray - vtk[row, column]).max() for ray in (exact, added)])
+            pellucid.render(scene, None, folder / "pellucid.exr")
+            worst = pellucid.compare(folder / "vtk.npy", folder / "pellucid.exr")[0]["worst"]
+            column, row = worst["column"], worst["row"]
+            exact, added = (255 * np.abs(march(described, folder, column, row, kind) - vtk[row, column]).max() for kind in (np.float64, np.float32))
+            what = f"{scene.name}: pellucid's worst pixel, {255 * worst['difference']:.3f}/255 from VTK; this ray is"
+            holds(f"{what} {exact:.3f} by exact positions, {added:.4f} by positions added up in f32", added / exact, 0.0, 0.1)
             exact, added = np.sqrt(np.mean(np.square(off), axis=0))
             holds(f"{scene.name}: RMS from VTK in 1/255, {exact:.4f} by exact positions, {added:.4f} by positions added up in f32", added / exact, 0.0, 0.5)
 
@@ -317,6 +403,8 @@ def march(described, folder, column, row, kind):
 
 
 def main():
+    # Also for VTK in this process, whose window is not the script's.
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     for experiment in (sampling, opacity, textures, gradients, lights, clipping, blend_modes, fixed_point):
         experiment()
     if len(sys.argv) > 1:

@@ -78,13 +78,18 @@ impl Compare {
             ),
         };
         let tolerance = self.tolerance.unwrap_or(ONE_STEP);
-        let comparison = compare_as_seen(&reference, &test, tolerance)?;
+        let comparison = compare_as_seen(&reference, &test, tolerance).map_err(|error| error.at(self.tested()))?;
         self.draw(&reference, &test)?;
         match self.format {
             Format::Text => stdout::print(&text::text(&comparison, tolerance))?,
             Format::Json => stdout::print_json(&json!({ "tolerance": tolerance, "comparison": comparison }))?,
         }
         self.judge(&comparison)
+    }
+
+    /// What is held against the reference.
+    fn tested(&self) -> &Path {
+        self.test.as_ref().unwrap_or(&self.reference)
     }
 
     fn draw(&self, reference: &Image, test: &Image) -> Result<()> {
@@ -122,7 +127,7 @@ impl Compare {
             return Ok(());
         }
         Err(Error::new(Fault::Tolerance, "the pictures are further apart than allowed")
-            .at(self.test.as_ref().unwrap_or(&self.reference))
+            .at(self.tested())
             .found(objections.join("; ")))
     }
 }

@@ -10,6 +10,11 @@ use pellucid::pipeline::{self, Options};
 use pellucid::spec::Spec;
 use pellucid::{Error, Fault, Result};
 
+use super::side::Side;
+
+/// What the script ends with where a mapper has no equal of the scene.
+const NO_EQUAL: i32 = 3;
+
 /// Where VTK is, and which of its renderers is asked.
 #[derive(Debug, clap::Args)]
 pub(super) struct LiveVtk {
@@ -36,6 +41,12 @@ enum Mapper {
 impl LiveVtk {
     /// VTK's picture of a pipeline's scene, by way of a folder that is removed again.
     pub(super) fn picture(&self, pipeline: &Path, overrides: &[String]) -> Result<Image> {
+        if let Side::File(path) = Side::of(pipeline) {
+            return Err(Error::new(Fault::Spec, "VTK renders pipelines, not pictures")
+                .at(path)
+                .expected("a pipeline (.yaml)")
+                .remedy("name the pipeline, or two pictures without --vtk"));
+        }
         let spec = Spec::load(pipeline, overrides)?;
         let scan = pipeline::load(&spec, &pipeline::Options::default())?;
         let plan = pipeline::plan(&spec, &scan, &Options::default())?;
@@ -56,9 +67,12 @@ impl LiveVtk {
         let ran = ran.map_err(|cause| {
             Error::new(Fault::Input, "Python cannot be run").at(&self.python).remedy(vtk::REMEDY).caused_by(cause)
         })?;
+        let said = String::from_utf8_lossy(&ran.stderr);
+        let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing").to_string();
+        if ran.status.code() == Some(NO_EQUAL) {
+            return Err(Error::new(Fault::Unsupported, last).element("--mapper").found(mapper).remedy("--mapper gpu"));
+        }
         if !ran.status.success() || !output.exists() {
-            let said = String::from_utf8_lossy(&ran.stderr);
-            let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing").to_string();
             return Err(Error::new(Fault::Input, "VTK made no picture")
                 .at(&self.python)
                 .found(last)

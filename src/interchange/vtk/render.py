@@ -3,7 +3,8 @@
 
     python render.py                       a picture.png beside the script, sRGB, as VTK displays it
     python render.py --output picture.npy  linear premultiplied RGBA in f32, top row first, free of 8-bit rounding
-    python render.py --mapper cpu          by the fixed-point mapper (transfer functions of the value alone)
+    python render.py --mapper cpu          by the fixed-point mapper (no averages, sums and surfaces, and of 2D transfer
+                                           functions those that are a product)
     python render.py --frames              one frame for each line `STEP_MM [FILE.npy]` on stdin, with its seconds on stdout
     python render.py --show                in a window
 
@@ -63,6 +64,12 @@ UNIT_MM = 1.0
 # VTK reads numpy's own memory, which must outlive it.
 KEPT = []
 
+# How far the opacities of a step may be from a product, and still be given to the fixed-point mapper as one.
+NEARLY_A_PRODUCT = 0.02
+
+# What this script exits with where a mapper cannot draw the scene.
+UNSUPPORTED = 3
+
 here = pathlib.Path(__file__).resolve().parent
 scene = json.loads((here / "scene.json").read_text())
 step_mm = arguments.step_mm or scene["step_mm"]
@@ -99,7 +106,11 @@ def transfer_function(appearance, value_range, step_mm):
     color, extinction = table[..., :3], table[..., 3]
     if two_d:
         # VTK does not correct the opacities of a 2D transfer function for the step.
-        rgba = np.concatenate([color, -np.expm1(-extinction * step_mm)[..., None]], axis=-1)
+        of_step = -np.expm1(-extinction * step_mm)
+        if arguments.mapper == "cpu":
+            by_value_and_gradient(appearance, value_range, color, of_step)
+            return
+        rgba = np.concatenate([color, of_step[..., None]], axis=-1)
         texture = vtkImageData()
         texture.SetDimensions(table.shape[1], table.shape[0], 1)
         texture.GetPointData().SetScalars(numpy_to_vtk(rgba.astype(np.float32).reshape(-1, 4), deep=True))
@@ -116,6 +127,36 @@ def transfer_function(appearance, value_range, step_mm):
     appearance.SetScalarOpacity(opacity)
     appearance.SetColor(colors)
     appearance.SetScalarOpacityUnitDistance(UNIT_MM)
+
+
+def factors(color, of_step):
+    """Opacities as a function of the gradient magnitude times one of the value, and the colours by value; nothing if they
+    are no such product."""
+    row, column = np.unravel_index(of_step.argmax(), of_step.shape)
+    by_value, by_gradient = of_step[row], of_step[:, column] / max(of_step[row, column], 1e-30)
+    off = np.abs(by_gradient[:, None] * by_value - of_step).max()
+    off = max(off, (np.abs(color - color[row]) * of_step[..., None]).max())
+    return (by_value, by_gradient, color[row]) if off <= NEARLY_A_PRODUCT else None
+
+
+def by_value_and_gradient(appearance, value_range, color, of_step):
+    """A product as the fixed-point mapper reads it: an opacity by value, and one by its own gradient magnitude.
+
+    Its gradient magnitudes are differences over the mean of the three spacings, in 256 levels up to a quarter of the
+    range of values."""
+    by_value, by_gradient, colors_by_value = factors(color, of_step)
+    opacity, colors, edges = vtkPiecewiseFunction(), vtkColorTransferFunction(), vtkPiecewiseFunction()
+    opacity.BuildFunctionFromTable(*value_range, len(by_value), by_value.copy())
+    colors.BuildFunctionFromTable(*value_range, len(by_value), colors_by_value.ravel().copy())
+    magnitudes = load("gradient_magnitude")
+    mean_mm = float(np.mean(scene["spacing_mm"]))
+    ends = float(magnitudes.min()) * mean_mm, float(magnitudes.max()) * mean_mm
+    edges.BuildFunctionFromTable(*ends, len(by_gradient), by_gradient.copy())
+    appearance.SetScalarOpacity(opacity)
+    appearance.SetColor(colors)
+    appearance.SetGradientOpacity(edges)
+    # The opacities are of a step already.
+    appearance.SetScalarOpacityUnitDistance(step_mm)
 
 
 def lights(renderer):
@@ -289,10 +330,19 @@ def picture():
 
 
 def refuse():
-    if arguments.mapper == "cpu" and two_d:
-        raise SystemExit("VTK's fixed-point mapper draws nothing with a 2D transfer function")
-    if arguments.mapper == "cpu" and blend["mode"] not in ("composite", "maximum", "minimum"):
-        raise SystemExit(f"VTK's fixed-point mapper has no equal of the blend mode {blend['mode']}")
+    """Ends the script where the fixed-point mapper has no equal of the scene: it would draw nothing, or something else."""
+    if arguments.mapper == "gpu":
+        return
+    objection = None
+    if blend["mode"] not in ("composite", "maximum", "minimum"):
+        objection = f"VTK's fixed-point mapper has no equal of the blend mode {blend['mode']}"
+    if two_d:
+        table = load("transfer_function").astype(np.float64)
+        if factors(table[..., :3], -np.expm1(-table[..., 3] * step_mm)) is None:
+            objection = "VTK's fixed-point mapper has no 2D transfer functions, and this one is no product of two of 1D"
+    if objection:
+        print(objection, file=sys.stderr)
+        raise SystemExit(UNSUPPORTED)
 
 
 def view(upside_down=False):
