@@ -173,6 +173,8 @@ struct Group<L: Lanes> {
     entry_mm: L::Doubles,
     exit_mm: L::Doubles,
     at_mm: L::Doubles,
+    /// Where that is, as a continuous index.
+    place: [L::Doubles; 3],
     until_mm: L::Doubles,
     cell: [L::Ints; 3],
     next_mm: [L::Doubles; 3],
@@ -195,6 +197,7 @@ impl<L: Lanes> Group<L> {
             entry_mm: L::Doubles::load(&walks.entry_mm[first..]),
             exit_mm: L::Doubles::load(&walks.exit_mm[first..]),
             at_mm: L::Doubles::load(&walks.at_mm[first..]),
+            place: [zero; 3],
             until_mm: L::Doubles::load(&walks.until_mm[first..]),
             cell: [L::Ints::splat(0); 3],
             next_mm: [zero; 3],
@@ -213,6 +216,7 @@ impl<L: Lanes> Group<L> {
             group.cell[a] = L::Ints::load(&walks.cell[a][first..]);
             group.next_mm[a] = L::Doubles::load(&walks.next_mm[a][first..]);
             group.last_cell[a] = L::Ints::splat(walks.last_cell[a]);
+            group.place[a] = group.place(a, group.at_mm);
         }
         group
     }
@@ -281,6 +285,7 @@ impl<L: Lanes> Group<L> {
             let zero = L::Doubles::splat(0.0);
             for a in 0..3 {
                 let p = self.place(a, self.at_mm);
+                self.place[a] = L::Doubles::select(leaps, p, self.place[a]);
                 // On a face, the cell that the ray is about to pass: ⌈p⌉ − 1 on the way down.
                 let down = zero - (zero - p).floor() - L::Doubles::splat(1.0);
                 let cell = L::Doubles::select(self.falls[a], down, p.floor()).to_ints();
@@ -293,13 +298,15 @@ impl<L: Lanes> Group<L> {
     }
 
     #[inline(always)]
-    fn write_down(&self, passes: L::Mask, to_mm: L::Doubles, passed: &mut Passed) {
+    fn write_down(&mut self, passes: L::Mask, to_mm: L::Doubles, passed: &mut Passed) {
         let at = passed.count;
         let (zero, one) = (L::Doubles::splat(0.0), L::Doubles::splat(1.0));
         for a in 0..3 {
             let cell = L::Doubles::from_ints(self.cell[a]);
-            let from = (self.place(a, self.at_mm) - cell).max(zero).min(one);
-            let to = (self.place(a, to_mm) - cell).max(zero).min(one);
+            let there = self.place(a, to_mm);
+            let from = (self.place[a] - cell).max(zero).min(one);
+            let to = (there - cell).max(zero).min(one);
+            self.place[a] = L::Doubles::select(passes, there, self.place[a]);
             L::from_doubles(from).compress(passes).store(&mut passed.from[a][at..]);
             L::from_doubles(to).compress(passes).store(&mut passed.to[a][at..]);
             self.cell[a].compress(passes).store(&mut passed.cell[a][at..]);
