@@ -4,7 +4,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use pellucid::interchange::presets::{ImportSettings, Imported, VolumeProperty, import, preset_name, read};
+use pellucid::interchange::presets::{
+    ColorNumbers, ImportSettings, Imported, VolumeProperty, import, preset_name, read,
+};
 use pellucid::io::whole_file;
 use pellucid::spec::{ValuesName, parse_preset};
 use pellucid::{Error, Fault, Result};
@@ -29,6 +31,10 @@ pub(super) struct Import {
     #[arg(long, value_enum, default_value_t = Values::Hu)]
     values: Values,
 
+    /// What colours are: a display's numbers, or light, for which VTK takes them when it blends
+    #[arg(long, value_enum, default_value_t = Colors::Display)]
+    colors: Colors,
+
     /// Length that the opacities are those of, mm; that of the file, or 1, unless told
     #[arg(long, value_name = "MM")]
     unit_distance: Option<f64>,
@@ -40,6 +46,12 @@ pub(super) struct Import {
     /// How far opacity and colour of a slab of the unit distance may be off
     #[arg(long, value_name = "SHARE", default_value_t = ImportSettings::default().max_deviation)]
     max_deviation: f64,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Colors {
+    Display,
+    Light,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -93,6 +105,10 @@ impl Import {
             values: match self.values {
                 Values::Hu => ValuesName::Hu,
                 Values::Arbitrary => ValuesName::Arbitrary,
+            },
+            colors: match self.colors {
+                Colors::Display => ColorNumbers::Display,
+                Colors::Light => ColorNumbers::Light,
             },
         };
         let imported = import(property, name, &settings).map_err(|error| error.at(&self.file))?;

@@ -16,10 +16,15 @@ pub(super) fn slab_of(optics: Optics, length_mm: f64) -> Slab {
     [opacity, light(r), light(g), light(b)]
 }
 
+/// The slab of an opacity and a linear colour.
+pub(super) fn slab_of_color(opacity: f64, color: [f64; 3]) -> Slab {
+    let [r, g, b] = color.map(|c| c * opacity);
+    [opacity, r, g, b]
+}
+
 /// The slab of an opacity and a colour in sRGB numbers.
 pub(super) fn slab_of_srgb(opacity: f64, color: [f64; 3]) -> Slab {
-    let [r, g, b] = color.map(|c| srgb::decode(c) * opacity);
-    [opacity, r, g, b]
+    slab_of_color(opacity, color.map(srgb::decode))
 }
 
 /// The largest difference of two slabs.
