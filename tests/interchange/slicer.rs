@@ -2,10 +2,11 @@
 
 use std::fs;
 
+use pellucid::image::srgb;
 use pellucid::interchange::presets::{ColorNumbers, ImportSettings, import, preset_name, read};
 use proptest::prelude::*;
 
-use super::{difference, file, imported, slab, slab_of_srgb, transfer_function, written_and_read};
+use super::{difference, file, imported, slab, transfer_function, written_and_read};
 
 /// A preset as the test reads it: names with rows of `x, y…`, by cutting the text at its quotes.
 struct Published {
@@ -60,12 +61,19 @@ fn deviation(published: &Published, bound: f64, colors: ColorNumbers, values: im
     assert!(imported.max_deviation <= bound, "{}: reports {}", published.name, imported.max_deviation);
     let function = transfer_function(&written_and_read(&imported));
     let at = |hu: f64| {
-        let (opacity, color) = (line(&published.opacity, hu)[0], line(&published.color, hu));
-        let expected = match colors {
-            ColorNumbers::Display => slab_of_srgb(opacity, &color),
-            ColorNumbers::Light => [opacity, opacity * color[0], opacity * color[1], opacity * color[2]],
+        let color = line(&published.color, hu).into_iter().map(|c| match colors {
+            ColorNumbers::Display => srgb::decode(c),
+            ColorNumbers::Light => c,
+        });
+        let color: Vec<f64> = color.collect();
+        // Opacity 1 of the unit distance is that of any length.
+        let of_unit = line(&published.opacity, hu)[0];
+        let of_length = |length_mm: f64| {
+            let opacity = 1.0 - (1.0 - of_unit).powf(length_mm);
+            let expected = [opacity, opacity * color[0], opacity * color[1], opacity * color[2]];
+            difference(slab(function.evaluate(hu, 0.0), length_mm), expected)
         };
-        difference(slab(function.evaluate(hu, 0.0), 1.0), expected)
+        [0.25, 1.0, 7.0, 60.0, 500.0].into_iter().map(of_length).fold(0.0, f64::max)
     };
     values.into_iter().map(at).fold(0.0, f64::max)
 }

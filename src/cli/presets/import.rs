@@ -43,7 +43,7 @@ pub(super) struct Import {
     #[arg(long, value_name = "MM")]
     voxel_mm: Option<f64>,
 
-    /// How far opacity and colour of a slab of the unit distance may be off
+    /// How far opacity and colour of a slab of any length may be off
     #[arg(long, value_name = "SHARE", default_value_t = ImportSettings::default().max_deviation)]
     max_deviation: f64,
 }
@@ -153,8 +153,8 @@ fn write(folder: &Path, presets: &[(Imported, String)]) -> Result<()> {
 fn summarise(imported: &Imported) {
     let points = imported.preset.widgets.iter().filter_map(|w| w.points.as_ref()).map(Vec::len).sum::<usize>();
     stderr::say(&format!(
-        "{}: {points} points; opacity and colour of {} mm within {:.1e}",
-        imported.preset.name, imported.unit_distance_mm, imported.max_deviation
+        "{}: {points} points; opacity and colour within {:.1e}",
+        imported.preset.name, imported.max_deviation
     ));
     if let Some(difference) = imported.whole_step_difference {
         stderr::say(&format!(

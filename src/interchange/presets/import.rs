@@ -1,7 +1,7 @@
 //! A volume property as a preset.
 
 use super::function::Function;
-use super::knots::{difference, refine, short, slab_of, slab_of_color};
+use super::knots::{difference_of_media, refine, short};
 use super::volume_property::VolumeProperty;
 use super::yaml;
 use crate::error::{Error, Fault, Result};
@@ -13,7 +13,7 @@ use crate::transfer::{Optics, Side};
 /// What a file does not say, and how closely it is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImportSettings {
-    /// Largest deviation of the opacity and the light of a slab of one unit distance, 10⁻⁴ to 1/4.
+    /// Largest deviation of the opacity and the light of a slab of any length, from 1/64 to 1024 unit distances; 10⁻⁴ to 1/4.
     pub max_deviation: f64,
     /// Unit distance in place of the file's, mm; where neither says one, 1 mm.
     pub unit_distance_mm: Option<f64>,
@@ -63,7 +63,7 @@ impl Default for ImportSettings {
 pub struct Imported {
     /// The preset: one widget of points.
     pub preset: Preset,
-    /// Largest deviation found, of opacity and of light of a slab of one unit distance.
+    /// Largest deviation found, of opacity and of light of a slab of any length.
     pub max_deviation: f64,
     /// Unit distance, mm.
     pub unit_distance_mm: f64,
@@ -163,9 +163,7 @@ fn points(property: &VolumeProperty, unit_mm: f64, settings: &ImportSettings) ->
         let ends = [optics(a, Side::Right), optics(b, Side::Left)];
         let line = Optics::NOTHING.plus(1.0 - t, ends[0]).plus(t, ends[1]);
         let (value, side) = if t < 1.0 { (a + t * (b - a), Side::Right) } else { (b, Side::Left) };
-        let [opacity] = property.scalar_opacity.at(value, side);
-        let color = property.color.at(value, side).map(|c| settings.colors.light(c));
-        difference(slab_of(line, unit_mm), slab_of_color(opacity, color))
+        difference_of_media(line, optics(value, side), unit_mm)
     };
     let refined = refine(&breaks, settings.max_deviation, deviation)?;
     let mut points = Vec::new();

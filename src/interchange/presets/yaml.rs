@@ -6,7 +6,7 @@ use crate::spec::{PointSpec, Preset, ValuesName, Widget};
 pub(super) fn text(imported: &Imported) -> String {
     let Preset { version, name, description, values, widgets, .. } = &imported.preset;
     let mut text = format!(
-        "# Opacities of {} mm became extinction per mm. A slab of that length has the same opacity and colour within {:.1e}.\n",
+        "# Opacities of {} mm became extinction per mm. A slab of any length has the same opacity and colour within {:.1e}.\n",
         imported.unit_distance_mm, imported.max_deviation
     );
     if imported.colors == ColorNumbers::Light {
