@@ -24,7 +24,7 @@ SCRIPT = ROOT / "src/interchange/vtk/render.py"
 BOUND = 1 / 255
 # Largest difference, RMS, and pixels off by more than a step, that a picture may have, in steps of 1/255.
 ON_WAVES = (1, 0.25, 0)
-# Here VTK's rounding is seen where values are steep or flat; PRESETS.md says how.
+# Here VTK's rounding is seen where values are steep or flat; presets-head.md says how.
 ON_HEAD = (60, 1, 40)
 # Entries of both programs' tables, so that neither shows: the widest texture of OpenGL by llvmpipe.
 ENTRIES = 16384
