@@ -24,7 +24,7 @@ SCRIPT = ROOT / "src/interchange/vtk/render.py"
 BOUND = 1 / 255
 # Largest difference, RMS, and pixels off by more than a step, that a picture may have, in steps of 1/255.
 ON_WAVES = (1, 0.25, 0)
-# Here VTK's rounding is seen where values are steep or flat; presets-head.md says how.
+# Here VTK's rounding is seen where values are steep or flat; PRESETS.md says how.
 ON_HEAD = (60, 1, 40)
 # Entries of both programs' tables, so that neither shows: the widest texture of OpenGL by llvmpipe.
 ENTRIES = 16384
@@ -106,7 +106,7 @@ class Rows:
 
     def __init__(self, pellucid, folder):
         self.pellucid, self.folder, self.points = pellucid, folder, {}
-        listed = pellucid.run("presets", "import", FILE, "--colors", "light", "-o", folder).stderr
+        listed = pellucid.run("presets", "import", FILE, "--colors", "light", "--max-deviation", "0.0001", "-o", folder).stderr
         for name, count in re.findall(r"^(\S+): (\d+) points", listed, re.M):
             self.points[name] = int(count)
         # So near that no ray grazes an edge of the waves.
@@ -139,7 +139,7 @@ def main():
         for preset in map(Preset, xml.etree.ElementTree.parse(FILE).getroot()):
             if arguments.names and preset.name not in arguments.names:
                 continue
-            found = rows.of(preset, arguments.table is not None)
+            found = rows.of(preset, False)
             lines.append(row(preset, rows.points[preset.file], *found))
             print(lines[-1], flush=True)
             for where, limits, (largest, rms, over) in zip(("waves", "head"), (ON_WAVES, ON_HEAD), found):
