@@ -45,7 +45,7 @@ picture brain "$head" "$face" "$(structures 'brain: show')"
 picture enamel "$head" "$mouth"
 picture engine "source: $data/engine.nrrd, values: arbitrary" "view: superior, azimuth: 35, elevation: -35, zoom: 1.4" "" "$octets"
 picture fat "$body" "$front" "" "" "opacity_scale: 0.3"
-# No scan there shows a heart, and that of the abdomen has no contrast agent.
+# No picture of `heart`: the abdomen has no voxel of one, and the thorax slices end below it.
 picture kidneys "$body" "$front" "$(organs '2: show, 3: show')" "" "shift_hu: -130"
 picture liver "$body" "$front" "$(organs '5: show')" "" "shift_hu: -50"
 picture lung "$body" "$front" "$(organs '10: show, 11: show, 14: show')"

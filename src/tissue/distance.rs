@@ -41,19 +41,70 @@ pub(super) fn squared_distances_mm2(
         for (offset, square) in slice.iter_mut().enumerate() {
             *square = if inside(k * nx * ny + offset) { 0.0 } else { f32::INFINITY };
         }
-        for line in slice.chunks_mut(nx) {
-            envelope.transform(line.len(), spacing_mm.x, |i| line[i]);
-            line.copy_from_slice(&envelope.line);
-        }
-        for i in 0..nx {
-            envelope.transform(ny, spacing_mm.y, |j| slice[i + nx * j]);
-            for (j, square) in envelope.line.iter().enumerate() {
-                slice[i + nx * j] = *square;
-            }
-        }
+        within_slice(envelope, nx, spacing_mm, slice);
     });
     along_k(dims, spacing_mm.z, &mut squares);
     squares
+}
+
+/// The first two passes.
+fn within_slice(envelope: &mut Envelope, nx: usize, spacing_mm: DVec3, slice: &mut [f32]) {
+    for line in slice.chunks_mut(nx) {
+        envelope.transform(line.len(), spacing_mm.x, |i| line[i]);
+        line.copy_from_slice(&envelope.line);
+    }
+    let ny = slice.len() / nx;
+    for i in 0..nx {
+        envelope.transform(ny, spacing_mm.y, |j| slice[i + nx * j]);
+        for (j, square) in envelope.line.iter().enumerate() {
+            slice[i + nx * j] = *square;
+        }
+    }
+}
+
+/// Slices of which it is told at once what is near.
+const SLICES_AT_ONCE: usize = 8;
+
+/// Tells of each voxel whether one that is `wanted` lies within `radius_mm` of it, a few slices at a time: no distances are kept but
+/// those within the slices that have a say, so that memory does not go with the volume.
+///
+/// `row([j, k])` has the voxels of a row. `tell` hears the number of a slice, and the answers for it and those that follow.
+pub(super) fn tell_near<'a>(
+    [nx, ny, nz]: [usize; 3],
+    spacing_mm: DVec3,
+    radius_mm: f64,
+    wanted: bool,
+    row: impl Fn([usize; 2]) -> &'a [bool] + Sync,
+    mut tell: impl FnMut(usize, &[bool]),
+) {
+    // The radius itself is within the ball, whatever rounding says.
+    let square = radius_mm * radius_mm * (1.0 + 1e-6);
+    let reach = (square.sqrt() / spacing_mm.z) as usize;
+    let mut near = vec![false; nx * ny * SLICES_AT_ONCE.min(nz)];
+    for first in (0..nz).step_by(SLICES_AT_ONCE) {
+        let end = nz.min(first + SLICES_AT_ONCE);
+        let from = first.saturating_sub(reach);
+        let transformed = |envelope: &mut Envelope, k: usize| {
+            let squares = (0..ny)
+                .flat_map(|j| row([j, k]).iter().map(|inside| if *inside == wanted { 0.0 } else { f32::INFINITY }));
+            let mut squares: Vec<f32> = squares.collect();
+            within_slice(envelope, nx, spacing_mm, &mut squares);
+            squares
+        };
+        let slices = from..nz.min(end + reach);
+        let planes: Vec<Vec<f32>> = slices.into_par_iter().map_init(Envelope::default, transformed).collect();
+        let near = &mut near[..nx * ny * (end - first)];
+        near.par_chunks_mut(nx * ny).enumerate().for_each(|(n, near)| {
+            let k = first + n;
+            near.fill(false);
+            for other in k.saturating_sub(reach)..nz.min(k + reach + 1) {
+                let along_k = k.abs_diff(other) as f64 * spacing_mm.z;
+                let rest = (square - along_k * along_k) as f32;
+                near.iter_mut().zip(&planes[other - from]).for_each(|(near, square)| *near |= *square <= rest);
+            }
+        });
+        tell(first, near);
+    }
 }
 
 /// The last pass, over slabs of rows so that lines along k lie together while they are worked on.

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::parts::{Joined, Parts};
 use super::surface;
 use crate::error::{Error, Fault, Result};
-use crate::volume::{LabelMap, Volume};
+use crate::volume::{LabelMap, Samples, Volume};
 
 /// What is known of a tissue's voxels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -84,6 +84,16 @@ impl Moments {
         self.squares += before * (number - self.mean);
     }
 
+    /// Those of whole numbers, from their sums, without rounding until the end.
+    fn of_sums(Sums { count, sum, squares }: Sums) -> Self {
+        if count == 0 {
+            return Moments::default();
+        }
+        let (n, sum) = (i128::from(count), i128::from(sum));
+        let apart = i128::from(squares) * n - sum * sum;
+        Moments { count, mean: sum as f64 / n as f64, squares: apart as f64 / n as f64 }
+    }
+
     /// All numbers of both (Chan, Golub and LeVeque 1983).
     fn and(self, other: Moments) -> Moments {
         let count = self.count + other.count;
@@ -100,14 +110,32 @@ impl Moments {
     }
 }
 
+/// Number, sum and sum of squares of the 16-bit numbers of a slice: of 2³² of them, the squares are less than 2⁶².
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    count: u64,
+    sum: i64,
+    squares: i64,
+}
+
 /// Moments of none and of each segment. Slices are summed in their order, so that threads do not matter.
 fn moments(labels: &LabelMap, volume: &Volume) -> Vec<Moments> {
     let classes = labels.segments().len() + 1;
     let [nx, ny, _] = labels.grid().dims();
     let of_slice = |(k, slice): (usize, &[u8])| {
+        let first = k * nx * ny;
+        if let Samples::I16(data) = volume.samples() {
+            let mut sums = vec![Sums::default(); classes];
+            for (label, stored) in slice.iter().zip(&data[first..]).filter(|(label, _)| **label != 0) {
+                let of = &mut sums[usize::from(*label)];
+                let stored = i64::from(*stored);
+                *of = Sums { count: of.count + 1, sum: of.sum + stored, squares: of.squares + stored * stored };
+            }
+            return sums.into_iter().map(Moments::of_sums).collect();
+        }
         let mut moments = vec![Moments::default(); classes];
         for (offset, label) in slice.iter().enumerate().filter(|(_, label)| **label != 0) {
-            moments[usize::from(*label)].add(volume.samples().stored(k * nx * ny + offset));
+            moments[usize::from(*label)].add(volume.samples().stored(first + offset));
         }
         moments
     };
@@ -120,14 +148,14 @@ fn moments(labels: &LabelMap, volume: &Volume) -> Vec<Moments> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::volume::{Grid, Quantity, Rescale, Samples, Segment};
+    use crate::volume::{Grid, Quantity, Rescale, Segment};
     use glam::DVec3;
 
     #[test]
     fn a_tissue_is_measured_by_its_voxels() {
         let grid = Grid::axis_aligned([4, 3, 2], DVec3::new(2.0, 2.0, 2.5)).unwrap();
-        let samples = Samples::I16((0..24).map(|n| n * 10 - 100).collect());
-        let volume = Volume::new(grid, samples, Rescale { slope: 2.0, intercept: 5.0 }, Quantity::Hu).unwrap();
+        let of = |samples| Volume::new(grid, samples, Rescale { slope: 2.0, intercept: 5.0 }, Quantity::Hu).unwrap();
+        let volume = of(Samples::I16((0..24).map(|n| n * 10 - 100).collect()));
         let mut voxels = vec![0; 24];
         for index in [0, 1, 23] {
             voxels[index] = 2;
@@ -135,6 +163,13 @@ mod tests {
         let segment = |name: &str, label| Segment { name: name.into(), label, color_srgb: [1.0; 3], concept: None };
         let labels = LabelMap::new(grid, vec![segment("none", 1), segment("some", 9)], voxels).unwrap();
         let [none, some] = measure(&labels, &volume).unwrap().try_into().expect("two tissues");
+        let floats = of(Samples::F32((0..24).map(|n| n as f32 * 10.0 - 100.0).collect()));
+        let of_floats = measure(&labels, &floats).unwrap().swap_remove(1);
+        let near = |a: Option<f64>, b: Option<f64>| (a.unwrap() - b.unwrap()).abs() < 1e-9;
+        assert!(
+            near(some.mean_hu, of_floats.mean_hu) && near(some.sd_hu, of_floats.sd_hu),
+            "{some:?} and {of_floats:?}"
+        );
         assert_eq!((none.voxels, none.mean_hu, none.sd_hu, none.bounds, none.parts), (0, None, None, None, 0));
         assert_eq!((some.label, some.voxels, some.parts), (9, 3, 2));
         assert!((some.ml - 0.03).abs() < 1e-12, "three voxels of 10 mm³: found {} ml", some.ml);

@@ -1,7 +1,7 @@
 //! Connected parts: voxels of one class that are joined through faces.
 //!
 //! Rows are cut into runs of one class, and runs that touch are united (union-find over runs, He, Chao and Suzuki 2008), so
-//! memory goes with the number of runs and not of voxels.
+//! memory goes with the number of runs and not of voxels: 24 bytes for each.
 
 /// Through which faces voxels are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,14 +15,20 @@ pub(super) enum Joined {
 /// Voxels of one class in a row.
 #[derive(Debug, Clone, Copy)]
 struct Run {
-    /// Row, `j + ny · k`.
-    row: usize,
-    /// First voxel in the row, and the one after the last.
-    start: usize,
-    end: usize,
-    class: u8,
-    /// A run of the same part, itself for the part's root.
+    /// Linear index of its first voxel.
+    first: usize,
+    /// A run of the same part that comes before it, itself for the part's root; in the end, the number of its part.
     parent: usize,
+    /// Number of voxels; a row has fewer than 2³² of them.
+    voxels: u32,
+    class: u8,
+}
+
+impl Run {
+    /// One after its last voxel.
+    fn end(&self) -> usize {
+        self.first + self.voxels as usize
+    }
 }
 
 /// A connected part.
@@ -38,10 +44,7 @@ pub(super) struct Part {
 
 /// The connected parts of all classes but 0.
 pub(super) struct Parts {
-    dims: [usize; 3],
     runs: Vec<Run>,
-    /// For each run, its part.
-    part_of_run: Vec<usize>,
     parts: Vec<Part>,
 }
 
@@ -56,10 +59,10 @@ impl Parts {
             cut(row, nx, &class, &mut runs);
             let mine = first_of_row[row]..runs.len();
             if row % ny > 0 {
-                join(&mut runs, first_of_row[row - 1]..first_of_row[row], mine.clone());
+                join(&mut runs, nx, first_of_row[row - 1]..first_of_row[row], mine.clone());
             }
             if row >= ny && joined == Joined::InVolume {
-                join(&mut runs, first_of_row[row - ny]..first_of_row[row - ny + 1], mine);
+                join(&mut runs, nx * ny, first_of_row[row - ny]..first_of_row[row - ny + 1], mine);
             }
         }
         Self::gathered(dims, joined, runs)
@@ -68,23 +71,23 @@ impl Parts {
     fn gathered(dims: [usize; 3], joined: Joined, mut runs: Vec<Run>) -> Self {
         let [nx, ny, nz] = dims;
         let mut parts = Vec::new();
-        let mut part_of_run = vec![usize::MAX; runs.len()];
         for n in 0..runs.len() {
-            let root = root(&mut runs, n);
-            let Run { row, start, end, class, .. } = runs[n];
-            // The root of a part is its first run, so that parts are in the order of their first voxels.
-            if root == n {
-                part_of_run[n] = parts.len();
+            let Run { first, parent, voxels, class } = runs[n];
+            // A run's parent comes before it, and so holds the number of its part by now. The root of a part is its first run, so
+            // that parts are in the order of their first voxels.
+            let own = if parent == n { parts.len() } else { runs[parent].parent };
+            if parent == n {
                 parts.push(Part { class, voxels: 0, on_border: false });
             }
-            part_of_run[n] = part_of_run[root];
+            runs[n].parent = own;
+            let (i, row) = (first % nx, first / nx);
             let (j, k) = (row % ny, row / ny);
             let end_slice = joined == Joined::InVolume && (k == 0 || k == nz - 1);
-            let part = &mut parts[part_of_run[n]];
-            part.voxels += end - start;
-            part.on_border |= start == 0 || end == nx || j == 0 || j == ny - 1 || end_slice;
+            let part = &mut parts[own];
+            part.voxels += voxels as usize;
+            part.on_border |= i == 0 || i + voxels as usize == nx || j == 0 || j == ny - 1 || end_slice;
         }
-        Parts { dims, runs, part_of_run, parts }
+        Parts { runs, parts }
     }
 
     /// The parts, in the order of their first voxels.
@@ -94,36 +97,36 @@ impl Parts {
 
     /// Calls `visit` with the linear indices of each run and the number of its part.
     pub(super) fn for_each_run(&self, mut visit: impl FnMut(std::ops::Range<usize>, usize)) {
-        for (run, part) in self.runs.iter().zip(&self.part_of_run) {
-            let row = run.row * self.dims[0];
-            visit(row + run.start..row + run.end, *part);
+        for run in &self.runs {
+            visit(run.first..run.end(), run.parent);
         }
     }
 }
 
 /// Cuts a row into runs.
 fn cut(row: usize, nx: usize, class: impl Fn(usize) -> u8, runs: &mut Vec<Run>) {
-    let at = |i: usize| class(row * nx + i);
-    let mut start = 0;
-    while start < nx {
-        let own = at(start);
-        let end = (start + 1..nx).find(|&i| at(i) != own).unwrap_or(nx);
+    let end_of_row = (row + 1) * nx;
+    let mut first = row * nx;
+    while first < end_of_row {
+        let own = class(first);
+        let end = (first + 1..end_of_row).find(|&index| class(index) != own).unwrap_or(end_of_row);
         if own != 0 {
-            runs.push(Run { row, start, end, class: own, parent: runs.len() });
+            runs.push(Run { first, parent: runs.len(), voxels: (end - first) as u32, class: own });
         }
-        start = end;
+        first = end;
     }
 }
 
-/// Unites the runs of two neighbouring rows that touch.
-fn join(runs: &mut [Run], mut before: std::ops::Range<usize>, mut after: std::ops::Range<usize>) {
+/// Unites the runs of two rows that touch, the rows so many voxels apart.
+fn join(runs: &mut [Run], apart: usize, mut before: std::ops::Range<usize>, mut after: std::ops::Range<usize>) {
     while let (Some(a), Some(b)) = (before.clone().next(), after.clone().next()) {
-        let (first, second) = (runs[a], runs[b]);
-        if first.class == second.class && first.start < second.end && second.start < first.end {
+        let (one, other) = (runs[a], runs[b]);
+        let (start, end) = (one.first + apart, one.end() + apart);
+        if one.class == other.class && start < other.end() && other.first < end {
             let (a, b) = (root(runs, a), root(runs, b));
             runs[a.max(b)].parent = a.min(b);
         }
-        if first.end <= second.end {
+        if end <= other.end() {
             before.next();
         } else {
             after.next();

@@ -14,6 +14,9 @@ use crate::volume::{Grid, LabelMap};
 /// Points on the sphere that weights are counted with: their error is far below that of thirteen directions.
 const SPHERE_POINTS: usize = 20_000;
 
+/// Voxels of a row that are compared at once: most neighbours are alike.
+const BLOCK: usize = 64;
+
 /// Area in mm² of the surface of each segment. Where the volume ends is no surface.
 pub(super) fn areas_mm2(map: &LabelMap) -> Vec<f64> {
     let directions = directions();
@@ -69,7 +72,8 @@ fn crossings(map: &LabelMap, directions: &[IVec3]) -> Vec<Vec<u64>> {
                 1 => (&row[..nx - 1], &other[1..]),
                 _ => (&row[1..], &other[..nx - 1]),
             };
-            for (&a, &b) in row.iter().zip(other).filter(|(a, b)| a != b) {
+            let unlike = row.chunks(BLOCK).zip(other.chunks(BLOCK)).filter(|(a, b)| a != b);
+            for (&a, &b) in unlike.flat_map(|(a, b)| a.iter().zip(b)).filter(|(a, b)| a != b) {
                 of_slice[d][usize::from(a)] += 1;
                 of_slice[d][usize::from(b)] += 1;
             }

@@ -6,6 +6,9 @@ use crate::error::{Error, Fault, Result};
 /// Most tissues of a label map: what a voxel holds is one byte.
 pub const MOST_SEGMENTS: usize = 255;
 
+/// Voxels of a row that are passed over at once if none of them is of a tissue.
+const BLOCK: usize = 64;
+
 /// One tissue of a label map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
@@ -69,6 +72,11 @@ impl LabelMap {
         }
     }
 
+    /// Lattice, tissues and voxels.
+    pub fn into_parts(self) -> (Grid, Vec<Segment>, Vec<u8>) {
+        (self.grid, self.segments, self.voxels)
+    }
+
     /// Lattice and affine.
     pub fn grid(&self) -> &Grid {
         &self.grid
@@ -104,7 +112,9 @@ impl LabelMap {
         let mut bounds: Vec<Option<[[usize; 2]; 3]>> = vec![None; self.segments.len()];
         for (row, line) in self.voxels.chunks(nx).enumerate() {
             let (j, k) = (row % ny, row / ny);
-            for (i, &voxel) in line.iter().enumerate().filter(|(_, voxel)| **voxel != 0) {
+            let blocks = line.chunks(BLOCK).enumerate().filter(|(_, block)| **block != [0; BLOCK][..block.len()]);
+            let voxels = blocks.flat_map(|(n, block)| block.iter().enumerate().map(move |(i, v)| (n * BLOCK + i, *v)));
+            for (i, voxel) in voxels.filter(|(_, voxel)| *voxel != 0) {
                 let bound = bounds[usize::from(voxel) - 1].get_or_insert([[i, i], [j, j], [k, k]]);
                 for (range, at) in bound.iter_mut().zip([i, j, k]) {
                     *range = [range[0].min(at), range[1].max(at)];

@@ -2,10 +2,11 @@
 
 use std::fs;
 
-use pellucid::interchange::presets::{preset_name, read};
+use pellucid::image::srgb;
+use pellucid::interchange::presets::{ColorNumbers, ImportSettings, import, preset_name, read};
 use proptest::prelude::*;
 
-use super::{difference, file, imported, slab, slab_of_srgb, transfer_function, written_and_read};
+use super::{difference, file, imported, slab, transfer_function, written_and_read};
 
 /// A preset as the test reads it: names with rows of `x, y…`, by cutting the text at its quotes.
 struct Published {
@@ -52,26 +53,38 @@ fn line(rows: &[Vec<f64>], x: f64) -> Vec<f64> {
 }
 
 /// The largest deviation of an import from what is published, at these values.
-fn deviation(published: &Published, bound: f64, values: impl IntoIterator<Item = f64>) -> f64 {
+fn deviation(published: &Published, bound: f64, colors: ColorNumbers, values: impl IntoIterator<Item = f64>) -> f64 {
     let properties = read(&file("slicer/presets.xml")).unwrap_or_else(|error| panic!("{error}"));
     let property = properties.iter().find(|property| property.name == published.name).expect("by its name");
-    let imported = imported(property, bound);
+    let settings = ImportSettings { max_deviation: bound, colors, ..ImportSettings::default() };
+    let imported = import(property, "imported", &settings).unwrap_or_else(|error| panic!("{}: {error}", property.name));
     assert!(imported.max_deviation <= bound, "{}: reports {}", published.name, imported.max_deviation);
     let function = transfer_function(&written_and_read(&imported));
     let at = |hu: f64| {
-        let expected = slab_of_srgb(line(&published.opacity, hu)[0], &line(&published.color, hu));
-        difference(slab(function.evaluate(hu, 0.0), 1.0), expected)
+        let color = line(&published.color, hu).into_iter().map(|c| match colors {
+            ColorNumbers::Display => srgb::decode(c),
+            ColorNumbers::Light => c,
+        });
+        let color: Vec<f64> = color.collect();
+        // Opacity 1 of the unit distance is that of any length.
+        let of_unit = line(&published.opacity, hu)[0];
+        let of_length = |length_mm: f64| {
+            let opacity = 1.0 - (1.0 - of_unit).powf(length_mm);
+            let expected = [opacity, opacity * color[0], opacity * color[1], opacity * color[2]];
+            difference(slab(function.evaluate(hu, 0.0), length_mm), expected)
+        };
+        [0.25, 1.0, 7.0, 60.0, 500.0].into_iter().map(of_length).fold(0.0, f64::max)
     };
     values.into_iter().map(at).fold(0.0, f64::max)
 }
 
 #[test]
-fn twenty_presets_are_what_they_were_at_every_hu() {
+fn all_presets_are_what_they_were_at_every_hu() {
     let all = published();
-    assert_eq!(all.len(), 20, "the CT presets of the file");
+    assert_eq!(all.len(), 22, "the CT presets of the file");
     for bound in [1.0 / 1024.0, 0.01] {
-        for published in &all {
-            let found = deviation(published, bound, (-3100..=3700).map(f64::from));
+        for (published, colors) in all.iter().flat_map(|p| [(p, ColorNumbers::Display), (p, ColorNumbers::Light)]) {
+            let found = deviation(published, bound, colors, (-3100..=3700).map(f64::from));
             assert!(found <= bound, "{} within {bound}: found {found}", published.name);
         }
     }
@@ -81,7 +94,7 @@ fn twenty_presets_are_what_they_were_at_every_hu() {
 #[test]
 fn a_coarse_bound_is_not_a_fine_one() {
     let bone = published().into_iter().find(|p| p.name == "CT-Bone").expect("CT-Bone");
-    let found = deviation(&bone, 0.25, (-3100..=3700).map(f64::from));
+    let found = deviation(&bone, 0.25, ColorNumbers::Display, (-3100..=3700).map(f64::from));
     assert!(found > 0.02 && found <= 0.25, "found {found}");
 }
 
@@ -91,13 +104,13 @@ proptest! {
     /// Between whole numbers, too, and for any bound.
     #[test]
     fn any_value_is_within_any_bound(
-        which in 0usize..20,
+        which in 0usize..22,
         exponent in 4..12_i32,
         values in prop::collection::vec(-3100.0..3700.0_f64, 200),
     ) {
         let bound = 2f64.powi(-exponent);
         let published = &published()[which];
-        let found = deviation(published, bound, values);
+        let found = deviation(published, bound, ColorNumbers::Display, values);
         prop_assert!(found <= bound, "{} within {bound}: found {found}", published.name);
     }
 }

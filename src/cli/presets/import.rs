@@ -4,7 +4,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use pellucid::interchange::presets::{ImportSettings, Imported, VolumeProperty, import, preset_name, read};
+use pellucid::interchange::presets::{
+    ColorNumbers, ImportSettings, Imported, VolumeProperty, import, preset_name, read,
+};
 use pellucid::io::whole_file;
 use pellucid::spec::{ValuesName, parse_preset};
 use pellucid::{Error, Fault, Result};
@@ -29,6 +31,10 @@ pub(super) struct Import {
     #[arg(long, value_enum, default_value_t = Values::Hu)]
     values: Values,
 
+    /// What colours are: a display's numbers, or light, for which VTK takes them when it blends
+    #[arg(long, value_enum, default_value_t = Colors::Display)]
+    colors: Colors,
+
     /// Length that the opacities are those of, mm; that of the file, or 1, unless told
     #[arg(long, value_name = "MM")]
     unit_distance: Option<f64>,
@@ -37,9 +43,15 @@ pub(super) struct Import {
     #[arg(long, value_name = "MM")]
     voxel_mm: Option<f64>,
 
-    /// How far opacity and colour of a slab of the unit distance may be off
+    /// How far opacity and colour of a slab of any length may be off
     #[arg(long, value_name = "SHARE", default_value_t = ImportSettings::default().max_deviation)]
     max_deviation: f64,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Colors {
+    Display,
+    Light,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -94,6 +106,10 @@ impl Import {
                 Values::Hu => ValuesName::Hu,
                 Values::Arbitrary => ValuesName::Arbitrary,
             },
+            colors: match self.colors {
+                Colors::Display => ColorNumbers::Display,
+                Colors::Light => ColorNumbers::Light,
+            },
         };
         let imported = import(property, name, &settings).map_err(|error| error.at(&self.file))?;
         let text = imported.yaml();
@@ -137,8 +153,8 @@ fn write(folder: &Path, presets: &[(Imported, String)]) -> Result<()> {
 fn summarise(imported: &Imported) {
     let points = imported.preset.widgets.iter().filter_map(|w| w.points.as_ref()).map(Vec::len).sum::<usize>();
     stderr::say(&format!(
-        "{}: {points} points; opacity and colour of {} mm within {:.1e}",
-        imported.preset.name, imported.unit_distance_mm, imported.max_deviation
+        "{}: {points} points; opacity and colour within {:.1e}",
+        imported.preset.name, imported.max_deviation
     ));
     if let Some(difference) = imported.whole_step_difference {
         stderr::say(&format!(

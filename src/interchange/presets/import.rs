@@ -1,7 +1,7 @@
 //! A volume property as a preset.
 
 use super::function::Function;
-use super::knots::{difference, refine, short, slab_of, slab_of_srgb};
+use super::knots::{difference_of_media, refine, short};
 use super::volume_property::VolumeProperty;
 use super::yaml;
 use crate::error::{Error, Fault, Result};
@@ -13,7 +13,7 @@ use crate::transfer::{Optics, Side};
 /// What a file does not say, and how closely it is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImportSettings {
-    /// Largest deviation of the opacity and the light of a slab of one unit distance, 10⁻⁴ to 1/4.
+    /// Largest deviation of the opacity and the light of a slab of any length, from 1/64 to 1024 unit distances; 10⁻⁴ to 1/4.
     pub max_deviation: f64,
     /// Unit distance in place of the file's, mm; where neither says one, 1 mm.
     pub unit_distance_mm: Option<f64>,
@@ -21,11 +21,40 @@ pub struct ImportSettings {
     pub voxel_mm: Option<f64>,
     /// What its positions measure.
     pub values: ValuesName,
+    /// What its colours are.
+    pub colors: ColorNumbers,
+}
+
+/// What the numbers of a colour are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ColorNumbers {
+    /// Those of a display, sRGB, by which people choose them: each colour is the light that it looks like.
+    #[default]
+    Display,
+    /// Light as they are. VTK blends the numbers of a display as if they were light, and only such a preset makes its picture, as
+    /// linear numbers: where translucent colours mix, another than the one of `Display`.
+    Light,
+}
+
+impl ColorNumbers {
+    /// The light of a number, 0 to 1.
+    pub(super) fn light(self, number: f64) -> f64 {
+        match self {
+            ColorNumbers::Display => srgb::decode(number),
+            ColorNumbers::Light => number,
+        }
+    }
 }
 
 impl Default for ImportSettings {
     fn default() -> Self {
-        ImportSettings { max_deviation: 1.0 / 1024.0, unit_distance_mm: None, voxel_mm: None, values: ValuesName::Hu }
+        ImportSettings {
+            max_deviation: 1.0 / 1024.0,
+            unit_distance_mm: None,
+            voxel_mm: None,
+            values: ValuesName::Hu,
+            colors: ColorNumbers::Display,
+        }
     }
 }
 
@@ -34,7 +63,7 @@ impl Default for ImportSettings {
 pub struct Imported {
     /// The preset: one widget of points.
     pub preset: Preset,
-    /// Largest deviation found, of opacity and of light of a slab of one unit distance.
+    /// Largest deviation found, of opacity and of light of a slab of any length.
     pub max_deviation: f64,
     /// Unit distance, mm.
     pub unit_distance_mm: f64,
@@ -43,6 +72,8 @@ pub struct Imported {
     pub whole_step_difference: Option<f64>,
     /// The pipeline's shading that goes with it, where the property has some; its coefficients.
     pub shading: Option<super::Phong>,
+    /// What its colours were taken for.
+    pub colors: ColorNumbers,
 }
 
 impl Imported {
@@ -72,7 +103,7 @@ pub fn import(property: &VolumeProperty, name: &str, settings: &ImportSettings) 
         let error = Error::new(Fault::Spec, "the unit distance is no length").found(unit.to_string());
         return Err(error.expected("mm above 0").remedy("give one by --unit-distance"));
     }
-    let (points, max_deviation) = points(property, unit, settings.max_deviation)?;
+    let (points, max_deviation) = points(property, unit, settings)?;
     let varies = property.gradient_opacity.as_ref().filter(|f| f.constant().is_none());
     let gradient_weight = match (&property.gradient_opacity, varies) {
         (_, Some(function)) => Some(weight(function, settings)?),
@@ -91,7 +122,14 @@ pub fn import(property: &VolumeProperty, name: &str, settings: &ImportSettings) 
         classify: None,
     };
     let whole_step_difference = varies.map(|gradient| whole_step_difference(&property.scalar_opacity, gradient));
-    Ok(Imported { preset, max_deviation, unit_distance_mm: unit, whole_step_difference, shading: property.shading })
+    Ok(Imported {
+        preset,
+        max_deviation,
+        unit_distance_mm: unit,
+        whole_step_difference,
+        shading: property.shading,
+        colors: settings.colors,
+    })
 }
 
 /// Refuses a bound that numbers of six digits cannot keep, or that says nothing.
@@ -104,9 +142,9 @@ pub(super) fn check_bound(max_deviation: f64) -> Result<()> {
 }
 
 /// What a point says at a position and side: extinction, and light per extinction.
-fn optics(property: &VolumeProperty, value: f64, side: Side, unit_mm: f64) -> Optics {
+fn optics(property: &VolumeProperty, value: f64, side: Side, unit_mm: f64, colors: ColorNumbers) -> Optics {
     let [opacity] = property.scalar_opacity.at(value, side);
-    let color = property.color.at(value, side).map(|c| rounded_color(srgb::decode(c)));
+    let color = property.color.at(value, side).map(|c| rounded_color(colors.light(c)));
     Optics::colored(short(extinction_per_mm(opacity, unit_mm)), color)
 }
 
@@ -115,22 +153,22 @@ fn rounded_color(linear: f64) -> f64 {
 }
 
 /// Points whose lines are within the bound of the property, and the largest deviation found.
-fn points(property: &VolumeProperty, unit_mm: f64, bound: f64) -> Result<(Vec<PointSpec>, f64)> {
+fn points(property: &VolumeProperty, unit_mm: f64, settings: &ImportSettings) -> Result<(Vec<PointSpec>, f64)> {
+    let optics = |value, side| optics(property, value, side, unit_mm, settings.colors);
     let mut breaks: Vec<f64> = property.scalar_opacity.breaks();
     breaks.extend(property.color.breaks());
     breaks.sort_by(f64::total_cmp);
     breaks.dedup();
     let deviation = |[a, b]: [f64; 2], t: f64| {
-        let ends = [optics(property, a, Side::Right, unit_mm), optics(property, b, Side::Left, unit_mm)];
+        let ends = [optics(a, Side::Right), optics(b, Side::Left)];
         let line = Optics::NOTHING.plus(1.0 - t, ends[0]).plus(t, ends[1]);
         let (value, side) = if t < 1.0 { (a + t * (b - a), Side::Right) } else { (b, Side::Left) };
-        let [opacity] = property.scalar_opacity.at(value, side);
-        difference(slab_of(line, unit_mm), slab_of_srgb(opacity, property.color.at(value, side)))
+        difference_of_media(line, optics(value, side), unit_mm)
     };
-    let refined = refine(&breaks, bound, deviation)?;
+    let refined = refine(&breaks, settings.max_deviation, deviation)?;
     let mut points = Vec::new();
     for &value in &refined.positions {
-        let [before, after] = [Side::Left, Side::Right].map(|side| optics(property, value, side, unit_mm));
+        let [before, after] = [Side::Left, Side::Right].map(|side| optics(value, side));
         points.push(point(value, before));
         if before != after {
             points.push(point(value, after));

@@ -22,6 +22,13 @@ pub(super) fn slab_of_srgb(opacity: f64, color: [f64; 3]) -> Slab {
     [opacity, r, g, b]
 }
 
+/// The largest difference of slabs of two media, of any length from 1/64 to 1024 times the unit: those and each twice as long as
+/// the one before. What is off by a share of its extinction is most off where the optical depth is 1, wherever that is.
+pub(super) fn difference_of_media(a: Optics, b: Optics, unit_mm: f64) -> f64 {
+    let lengths_mm = (-6..=10).map(|exponent| unit_mm * 2f64.powi(exponent));
+    lengths_mm.map(|length_mm| difference(slab_of(a, length_mm), slab_of(b, length_mm))).fold(0.0, f64::max)
+}
+
 /// The largest difference of two slabs.
 pub(super) fn difference(a: Slab, b: Slab) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
@@ -127,5 +134,16 @@ mod tests {
         let found = difference(slab_of(optics, 2.0), slab_of_srgb(0.3, color));
         assert!(found < 1e-15, "found {found}");
         assert!(difference(slab_of(optics, 1.0), slab_of_srgb(0.3, color)) > 0.1, "another length is another slab");
+    }
+
+    /// A share `e` more of an extinction is `e / exp(1)` of opacity at most, at the length at which the optical depth is 1.
+    #[test]
+    fn faint_media_differ_at_length() {
+        for extinction_per_mm in [0.004, 0.05, 0.7] {
+            let media = [1.0, 1.01].map(|share| Optics::colored(share * extinction_per_mm, [1.0; 3]));
+            let found = difference_of_media(media[0], media[1], 1.0);
+            let expected = 0.01 / 1f64.exp();
+            assert!((found / expected - 1.0).abs() < 0.07, "{extinction_per_mm}: found {found}, expected {expected}");
+        }
     }
 }

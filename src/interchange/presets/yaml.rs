@@ -1,14 +1,19 @@
 //! An imported preset as YAML, a point a line.
 
-use super::import::Imported;
+use super::import::{ColorNumbers, Imported};
 use crate::spec::{PointSpec, Preset, ValuesName, Widget};
 
 pub(super) fn text(imported: &Imported) -> String {
     let Preset { version, name, description, values, widgets, .. } = &imported.preset;
     let mut text = format!(
-        "# Opacities of {} mm became extinction per mm. A slab of that length has the same opacity and colour within {:.1e}.\n",
+        "# Opacities of {} mm became extinction per mm. A slab of any length has the same opacity and colour within {:.1e}.\n",
         imported.unit_distance_mm, imported.max_deviation
     );
+    if imported.colors == ColorNumbers::Light {
+        text.push_str(
+            "# Its colours are VTK's numbers taken for light, so what is rendered holds VTK's numbers, and no light.\n",
+        );
+    }
     if let Some(difference) = imported.whole_step_difference {
         text.push_str(&format!(
             "# Gradient opacity became a weight, VTK's limit for short steps; in steps of {} mm VTK's opacity is up to \

@@ -3,9 +3,10 @@
 
 use std::path::Path;
 
-use super::{Encoding, Header, write};
+use super::Header;
+use super::write::write_labels;
 use crate::error::{Error, Fault, Result};
-use crate::volume::{Concept, LabelMap, Quantity, Rescale, Samples, Volume};
+use crate::volume::{Concept, LabelMap};
 
 /// The representation that the file holds, as Slicer names it.
 const BINARY_LABEL_MAP: &str = "Binary labelmap";
@@ -22,7 +23,7 @@ const TISSUE: &str = "SCT^85756007^Tissue";
 /// `Fault::Output` if the file cannot be written.
 pub fn write_label_map(path: &Path, labels: &LabelMap, with_segments: bool) -> Result<()> {
     let key_values = if with_segments { key_values(labels) } else { Vec::new() };
-    write(path, &as_volume(labels)?, Encoding::Gzip, &key_values)
+    write_labels(path, labels, &key_values)
 }
 
 /// What a `.seg.nrrd` says of a label.
@@ -110,17 +111,4 @@ fn terminology(concept: &Concept) -> String {
     // What separates the parts cannot be in one.
     let meaning = concept.meaning.replace(['~', '^', '|'], " ");
     format!("{TYPES}~{TISSUE}~SCT^{}^{meaning}~^^~{REGIONS}~^^~^^", concept.code)
-}
-
-/// The labels as samples, for the writer of volumes.
-fn as_volume(labels: &LabelMap) -> Result<Volume> {
-    let mut numbers = [0_u16; 256];
-    for (number, voxel) in numbers.iter_mut().zip(0..=labels.segments().len()) {
-        // A label map has at most 255 segments.
-        *number = labels.label_of(voxel as u8);
-    }
-    // Flipping the highest bit subtracts 32768: any 16-bit label fits.
-    let samples = labels.voxels().iter().map(|voxel| (numbers[usize::from(*voxel)] ^ 0x8000) as i16).collect();
-    let rescale = Rescale { slope: 1.0, intercept: 32768.0 };
-    Volume::new(*labels.grid(), Samples::I16(samples), rescale, Quantity::Arbitrary)
 }

@@ -11,7 +11,7 @@ use super::encoding::{ElementType, Encoding};
 use super::field::Field;
 use crate::error::{Error, Fault, Result};
 use crate::io::whole_file;
-use crate::volume::{Quantity, Samples, Volume};
+use crate::volume::{Grid, LabelMap, Quantity, Samples, Volume};
 
 /// Values that are converted before they are written, to keep the number of writes small.
 const CHUNK_VALUES: usize = 1 << 14;
@@ -28,7 +28,8 @@ const CHUNK_VALUES: usize = 1 << 14;
 pub fn write(path: &Path, volume: &Volume, encoding: Encoding, key_values: &[(String, String)]) -> Result<()> {
     refuse_uneven(volume).map_err(|error| error.at(path))?;
     let element_type = element_type(volume);
-    let header = header(volume, element_type, encoding, key_values).map_err(|error| error.at(path))?;
+    let header = header(volume.grid(), volume.samples().are_rgba(), element_type, encoding, key_values)
+        .map_err(|error| error.at(path))?;
     whole_file::write(path, |file| {
         file.write_all(header.as_bytes())?;
         match encoding {
@@ -46,6 +47,32 @@ pub fn write(path: &Path, volume: &Volume, encoding: Encoding, key_values: &[(St
             Encoding::Text => text(volume, file),
             Encoding::Hex => binary(volume, element_type, &mut HexDigits(file)),
         }
+    })
+}
+
+/// Writes the labels of a map, packed, as uint8 if they fit, as uint16 if not.
+///
+/// # Errors
+/// As [`write`].
+pub(super) fn write_labels(path: &Path, labels: &LabelMap, key_values: &[(String, String)]) -> Result<()> {
+    let wide = labels.segments().iter().any(|segment| segment.label > 255);
+    let element_type = if wide { ElementType::U16 } else { ElementType::U8 };
+    let header =
+        header(labels.grid(), false, element_type, Encoding::Gzip, key_values).map_err(|error| error.at(path))?;
+    // A label map has at most 255 segments.
+    let numbers: Vec<u16> = (0..=labels.segments().len()).map(|voxel| labels.label_of(voxel as u8)).collect();
+    whole_file::write(path, |file| {
+        file.write_all(header.as_bytes())?;
+        let mut file = GzEncoder::new(file, flate2::Compression::default());
+        for chunk in labels.voxels().chunks(CHUNK_VALUES) {
+            let numbers = chunk.iter().map(|voxel| numbers[usize::from(*voxel)]);
+            let bytes: Vec<u8> = match wide {
+                true => numbers.flat_map(u16::to_le_bytes).collect(),
+                false => numbers.map(|label| label as u8).collect(),
+            };
+            file.write_all(&bytes)?;
+        }
+        file.finish().map(drop)
     })
 }
 
@@ -88,18 +115,19 @@ fn element_type(volume: &Volume) -> ElementType {
 }
 
 fn header(
-    volume: &Volume,
+    grid: &Grid,
+    are_rgba: bool,
     element_type: ElementType,
     encoding: Encoding,
     key_values: &[(String, String)],
 ) -> Result<String> {
-    let [nx, ny, nz] = volume.grid().dims();
-    let affine = volume.grid().index_to_lps_mm();
+    let [nx, ny, nz] = grid.dims();
+    let affine = grid.index_to_lps_mm();
     let vector = |v: glam::DVec3| format!("({},{},{})", v.x, v.y, v.z);
     let steps = affine.matrix3;
     // Dimension, and what stands before the three axes of space in sizes, directions and kinds.
     let [dimension, size, direction, kind] =
-        if volume.samples().are_rgba() { ["4", "4 ", "none ", "RGBA-color "] } else { ["3", "", "", ""] };
+        if are_rgba { ["4", "4 ", "none ", "RGBA-color "] } else { ["3", "", "", ""] };
     let mut header = format!(
         "NRRD0004\n\
          type: {}\n\

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::error::Result;
 use crate::tissue::Mask;
 use crate::tissue::crop::Crop;
-use crate::tissue::distance::{orthogonal_spacing_mm, squared_distances_mm2};
+use crate::tissue::distance::{orthogonal_spacing_mm, tell_near};
 use crate::volume::Grid;
 
 /// Grows the mask by a ball of this radius and shrinks it by the same ball. What lies beyond the lattice has no say.
@@ -15,15 +15,17 @@ pub(super) fn close(mask: &mut Mask, grid: &Grid, radius_mm: f64) -> Result<()> 
     // The grown mask and one voxel beyond it: the nearest voxel outside is then in the crop.
     let reach = (DVec3::splat(radius_mm) / spacing_mm).to_array().map(|voxels| voxels as usize + 2);
     let crop = Crop::around(bounds, reach, mask.dims);
-    let mut part = crop.of(mask);
-    // The radius itself is within the ball, whatever rounding says.
-    let square = (radius_mm * radius_mm * (1.0 + 1e-6)) as f32;
-    let grown = squared_distances_mm2(crop.dims, spacing_mm, |index| part.inside[index]);
-    let outside = squared_distances_mm2(crop.dims, spacing_mm, |index| grown[index] > square);
-    for (inside, distance) in part.inside.iter_mut().zip(&outside) {
-        *inside = *distance > square;
-    }
-    crop.put(&part, mask);
+    let mut grown = Vec::with_capacity(crop.dims.iter().product());
+    let row = |row: [usize; 2]| &mask.inside[crop.start(row)..][..crop.dims[0]];
+    tell_near(crop.dims, spacing_mm, radius_mm, true, row, |_, near| grown.extend_from_slice(near));
+    let [nx, ny, _] = crop.dims;
+    let row = |[j, k]: [usize; 2]| &grown[nx * (j + ny * k)..][..nx];
+    tell_near(crop.dims, spacing_mm, radius_mm, false, row, |first, outside_is_near| {
+        for (n, outside_is_near) in outside_is_near.chunks(nx).enumerate() {
+            let line = &mut mask.inside[crop.start([n % ny, first + n / ny])..][..nx];
+            line.iter_mut().zip(outside_is_near).for_each(|(inside, near)| *inside = !near);
+        }
+    });
     Ok(())
 }
 
@@ -47,6 +49,7 @@ mod tests {
             ([9, 8, 7], DVec3::new(1.0, 1.0, 2.0), 2.0),
             ([9, 8, 7], DVec3::new(0.7, 1.1, 3.0), 1.6),
             ([12, 12, 1], DVec3::splat(3.0), 4.5),
+            ([5, 6, 21], DVec3::new(1.0, 1.0, 0.7), 2.0),
         ] {
             let grid = Grid::axis_aligned(dims, spacing).unwrap();
             for every in [5, 11, 29] {
