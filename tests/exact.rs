@@ -1,5 +1,7 @@
 //! The exact integrator against the oracle: every pixel within the tolerance, and within the bound it reports.
 
+mod levels;
+
 use crate::support::scenes::{rough_volume, scene_around, thin_shell, two_colors, two_lights};
 use pellucid::integrate::exact::{Precision, tracer};
 use pellucid::oracle::Oracle;

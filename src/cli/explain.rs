@@ -3,6 +3,7 @@
 use pellucid::Result;
 use pellucid::pipeline;
 use pellucid::plan::{StackPlan, explain, explain_json};
+use pellucid::simd::Level;
 use pellucid::spec::Document;
 
 use super::{Format, PipelineArguments, stdout};
@@ -34,9 +35,14 @@ impl Explain {
         let options = self.pipeline.options(None);
         let scan = pipeline::load(&spec, &options)?;
         let plan = pipeline::settled_plan(&spec, scan, &options)?;
+        let level = options.level.unwrap_or_else(Level::widest);
         match self.format {
-            Format::Text => stdout::print(&explain(&plan)),
-            Format::Json => stdout::print_json(&explain_json(&plan)),
+            Format::Text => stdout::print(&format!("{}\nregisters: {level}\n", explain(&plan).trim_end())),
+            Format::Json => {
+                let mut json = explain_json(&plan);
+                json["registers"] = level.to_string().into();
+                stdout::print_json(&json)
+            }
         }
     }
 }

@@ -28,6 +28,7 @@ use std::path::PathBuf;
 use bytesize::ByteSize;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use pellucid::pipeline::Options;
+use pellucid::simd::Level;
 use pellucid::{Error, Fault, Result};
 
 /// CT volume rendering with a known error: a scan and a YAML pipeline in, a picture within a tolerance out.
@@ -105,6 +106,11 @@ struct PipelineArguments {
     /// Most memory to take, such as 4GB or 512MiB; 80 % of what is free unless told
     #[arg(long, value_name = "BYTES")]
     max_memory: Option<ByteSize>,
+
+    /// Registers to compute with: scalar, avx2 or avx512; the widest that the processor has unless told. The picture does not
+    /// depend on it
+    #[arg(long, value_name = "LEVEL")]
+    simd: Option<Level>,
 }
 
 impl PipelineArguments {
@@ -116,7 +122,7 @@ impl PipelineArguments {
 
     /// What is not written in the pipeline.
     fn options(&self, output: Option<PathBuf>) -> Options {
-        Options { output, max_memory_bytes: self.max_memory.map(|most| most.as_u64()) }
+        Options { output, max_memory_bytes: self.max_memory.map(|most| most.as_u64()), level: self.simd }
     }
 }
 

@@ -38,10 +38,10 @@ impl Occupancy {
         occupancy
     }
 
-    /// Joins cubes of `1 << LOG2_BLOCKs` blocks per axis that are empty all over.
-    fn join(&mut self, LOG2_BLOCKs: u32, log2_cells: u8) {
+    /// Joins cubes of `1 << log2_blocks` blocks per axis that are empty all over.
+    fn join(&mut self, log2_blocks: u32, log2_cells: u8) {
         let [nx, ny, nz] = self.blocks;
-        let side = 1 << LOG2_BLOCKs;
+        let side = 1 << log2_blocks;
         let span = |from: usize, n: usize| from..(from + side).min(n);
         for z in (0..nz).step_by(side) {
             for y in (0..ny).step_by(side) {

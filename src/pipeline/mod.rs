@@ -21,9 +21,10 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Fault, Result};
 use crate::image::Image;
-use crate::integrate::{self, Rendered};
+use crate::integrate::{self, Rendered, Schedule};
 use crate::io::{Scan, exr, png};
 use crate::plan::{Format, LabelInfo, Output, Plan, VolumeInfo};
+use crate::simd::Level;
 use crate::spec::Spec;
 
 pub use certify::Certificate;
@@ -46,6 +47,8 @@ pub struct Options {
     pub output: Option<PathBuf>,
     /// Most bytes of memory to hold; 80 % of what is free by default.
     pub max_memory_bytes: Option<u64>,
+    /// The registers that kernels are run with; the widest of this processor by default. The picture does not depend on it.
+    pub level: Option<Level>,
 }
 
 /// How far a run is.
@@ -88,7 +91,7 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
     let (plan, choice) = auto::settled((spec, &info), &scan.volume, plan, options, &mut stopwatch)?;
     let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
     prepare_folder(&plan.output.path)?;
-    let rendered = stopwatch.time("integrate", || integrate(&scan, &plan, progress))?;
+    let rendered = stopwatch.time("integrate", || integrate(&scan, &plan, options, progress))?;
     let pixels_sha256 = digest::of_pixels(&rendered.image);
     let certificate = plan.certify.map(|count| {
         stopwatch.time("certify", || Certificate::of(&rendered.image, &pixels_sha256, &scan.volume, &plan, count))
@@ -115,7 +118,7 @@ pub fn picture(spec: &Spec, progress: Progress<'_>) -> Result<Rendered> {
     memory::check(&plan, &options)?;
     let (scan, _) = mask::classified(scan, &plan, &mut stopwatch)?;
     let (plan, _) = auto::settled((spec, &info), &scan.volume, plan, &options, &mut stopwatch)?;
-    integrate(&scan, &plan, progress)
+    integrate(&scan, &plan, &options, progress)
 }
 
 /// The plan for a scan as [`plan`] makes it; where the pipeline leaves the method to measurements, these are made.
@@ -149,10 +152,11 @@ fn planned(spec: &Spec, scan: &Scan, options: &Options) -> Result<(VolumeInfo, P
     Ok((info, plan))
 }
 
-fn integrate(scan: &Scan, plan: &Plan, progress: Progress<'_>) -> Result<Rendered> {
+fn integrate(scan: &Scan, plan: &Plan, options: &Options, progress: Progress<'_>) -> Result<Rendered> {
     progress(Event::Rays(plan.scene.camera.size().iter().product()));
     let pixels = |count| progress(Event::Pixels(count));
-    integrate::render(&scan.volume, &plan.scene, &plan.method, &pixels)
+    let schedule = Schedule { level: options.level.unwrap_or_else(Level::widest), ..Schedule::default() };
+    integrate::render_scheduled(&scan.volume, &plan.scene, &plan.method, schedule, &pixels)
 }
 
 /// What the picture's file says of itself, for those who have lost its sidecar.

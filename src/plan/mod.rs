@@ -10,6 +10,7 @@ mod clip;
 mod colors;
 mod crop;
 mod effects;
+mod exact_kernel;
 mod explain;
 mod integrator;
 mod layers;
@@ -144,9 +145,11 @@ impl Plan {
         let demand = Demand {
             gradient: scene.shading.as_ref().is_some_and(Shading::is_lit),
             gradient_magnitude: scene.transfer_functions().any(TransferFunction::reads_gradient),
-            macrocells: matches!(method, Method::March(_))
-                && model::skips_blocks(&scene.model)
-                && volume.uneven_slices_mm.is_none(),
+            macrocells: match method {
+                Method::March(_) => model::skips_blocks(&scene.model) && volume.uneven_slices_mm.is_none(),
+                Method::Exact(_) => exact_kernel::is_in_registers(&scene, volume),
+                Method::Reference => false,
+            },
             visibility: !scene.occluded_directions().is_empty(),
         };
         let mut plan = Plan {

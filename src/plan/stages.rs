@@ -35,8 +35,9 @@ pub struct Omission {
 /// Why most effects are not computed.
 pub(super) const NOT_NAMED: &str = "the pipeline does not name it";
 
-/// Cells along each axis of a block of macrocells.
-const BLOCK_CELLS: usize = 8;
+/// Cells along each axis of a block of macrocells, for marching and for the exact integrator.
+const MARCHED_BLOCK_CELLS: usize = 8;
+const EXACT_BLOCK_CELLS: usize = 4;
 
 pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     let voxels = volume.grid.voxel_count() as u64;
@@ -60,8 +61,13 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         field("gradient at samples, by central differences, not stored", 0);
     }
     if plan.demand.macrocells {
-        let channels = if plan.demand.gradient_magnitude { 2 } else { 1 };
-        field("macrocells: value ranges of blocks of 8 x 8 x 8 cells", 8 * channels * block_count(&volume.grid));
+        let (cells, bytes) = match plan.method {
+            Method::Exact(_) => (EXACT_BLOCK_CELLS, 9),
+            _ if plan.demand.gradient_magnitude => (MARCHED_BLOCK_CELLS, 16),
+            _ => (MARCHED_BLOCK_CELLS, 8),
+        };
+        let what = format!("macrocells: value ranges of blocks of {cells} x {cells} x {cells} cells");
+        field(&what, bytes * block_count(&volume.grid, cells));
     }
     if let Some(classes) = &plan.label_classes {
         stages.push(Stage {
@@ -112,8 +118,12 @@ fn describe_volume(volume: &VolumeInfo) -> String {
     format!("{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {between_slices} mm, {storage}, {values}", mm.x, mm.y)
 }
 
-pub(super) fn block_count(grid: &Grid) -> u64 {
-    grid.dims().iter().map(|&n| (n - 1).div_ceil(BLOCK_CELLS).max(1) as u64).product()
+pub(super) fn marched_block_count(grid: &Grid) -> u64 {
+    block_count(grid, MARCHED_BLOCK_CELLS)
+}
+
+fn block_count(grid: &Grid, cells: usize) -> u64 {
+    grid.dims().iter().map(|&n| (n - 1).div_ceil(cells).max(1) as u64).product()
 }
 
 fn classify(plan: &Plan) -> Stage {

@@ -3,7 +3,7 @@
 use crate::scene::{ClassifyAt, Model, Scene};
 use crate::volume::{ColorEncoding, RgbaEncoding};
 
-use super::stages::{Stage, block_count};
+use super::stages::{Stage, marched_block_count};
 use super::{Plan, VolumeInfo};
 
 /// True if emission and extinction are given at the voxels.
@@ -31,7 +31,7 @@ pub(super) fn stages(plan: &Plan, volume: &VolumeInfo, classify: impl Fn() -> St
         add(
             "field",
             "macrocells: blocks of 8 x 8 x 8 cells with a voxel that shows".to_owned(),
-            block_count(&volume.grid),
+            marched_block_count(&volume.grid),
         );
     }
     stages

@@ -257,16 +257,6 @@ impl Doubles for F64x8 {
         let ([a, b], [c, d], [low, high]) = (yes.0, no.0, F64x8::split(mask));
         F64x8(unsafe { [_mm256_blendv_pd(c, a, low), _mm256_blendv_pd(d, b, high)] })
     }
-    #[inline(always)]
-    fn compress(self, mask: Mask8) -> Self {
-        let mut lanes = [0.0; 8];
-        self.store(&mut lanes);
-        let mut kept = [0.0; 8];
-        for (to, &from) in kept.iter_mut().zip(&COMPRESSED[mask.bits() as usize & 255]) {
-            *to = lanes[from as usize & 7];
-        }
-        F64x8::load(&kept)
-    }
 }
 
 impl Default for I32x8 {

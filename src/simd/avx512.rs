@@ -217,17 +217,6 @@ impl Doubles for F64x16 {
         let ([a, b], [c, d]) = (yes.0, no.0);
         F64x16(unsafe { [_mm512_mask_blend_pd(mask.0 as u8, c, a), _mm512_mask_blend_pd((mask.0 >> 8) as u8, d, b)] })
     }
-    #[inline(always)]
-    fn compress(self, mask: Mask16) -> Self {
-        let [low, high] = self.0;
-        let mut lanes = [0.0; 24];
-        let kept = (mask.0 as u8).count_ones() as usize;
-        unsafe {
-            _mm512_storeu_pd(lanes.as_mut_ptr(), _mm512_maskz_compress_pd(mask.0 as u8, low));
-            _mm512_storeu_pd(lanes[kept..kept + 8].as_mut_ptr(), _mm512_maskz_compress_pd((mask.0 >> 8) as u8, high));
-        }
-        F64x16::load(&lanes)
-    }
 }
 
 impl Default for I32x16 {

@@ -75,8 +75,6 @@ pub(crate) trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<O
     fn le(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is true, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
-    fn compress(self, mask: Self::Mask) -> Self;
 }
 
 /// i32 numbers side by side.

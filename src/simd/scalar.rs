@@ -118,10 +118,6 @@ impl Doubles for f64 {
     fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }
-    #[inline(always)]
-    fn compress(self, _: bool) -> Self {
-        self
-    }
 }
 
 impl Ints for i32 {

@@ -23,9 +23,4 @@ impl Table {
     pub(super) fn entries(&self) -> &[f32] {
         &self.entries
     }
-
-    /// Bytes in memory.
-    pub(crate) fn bytes(&self) -> usize {
-        size_of_val(self.entries.as_slice())
-    }
 }

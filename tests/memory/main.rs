@@ -163,7 +163,7 @@ fn a_mask_takes_a_byte_per_voxel_and_none_takes_nothing() {
 fn a_limit_is_kept_before_anything_is_allocated() {
     let _alone = alone();
     let spec = spec("{ phantom: { head: { size: 96 } } }", TWO_D, "integrate: { march: { step_voxels: 2 } }");
-    let options = Options { output: Some("never.png".into()), max_memory_bytes: Some(4_000_000) };
+    let options = Options { output: Some("never.png".into()), max_memory_bytes: Some(4_000_000), level: None };
     let (outcome, bytes) = peak_of(|| pipeline::run(&spec, &options, &|_| ()));
     let error = outcome.expect_err("the gradient magnitude alone takes more");
     assert_eq!(error.fault(), Fault::Limit, "found {error}");

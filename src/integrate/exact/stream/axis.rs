@@ -12,7 +12,7 @@ const FEW: usize = 16;
 /// The `n + 1` knots of an axis cut the line into `n + 2` intervals: number 0 lies below the first knot, number `n + 1` from the
 /// last one on.
 #[derive(Debug, Clone)]
-pub(super) struct Axis {
+pub(in crate::integrate::exact) struct Axis {
     knots: Vec<f32>,
     /// Lower ends of the intervals; that of the first is far below.
     ends: Table,
@@ -98,13 +98,5 @@ impl Axis {
     #[inline(always)]
     pub(super) fn steep(&self) -> Option<&Table> {
         self.steep.as_ref()
-    }
-
-    /// Bytes in memory.
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.knots.as_slice())
-            + self.ends.bytes()
-            + self.anchors.bytes()
-            + self.steep.as_ref().map_or(0, Table::bytes)
     }
 }

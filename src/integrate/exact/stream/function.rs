@@ -20,9 +20,6 @@ pub(in crate::integrate::exact) trait Function<const F: usize>: Sync {
 
     /// The integral over a piece on which each field stays in one interval.
     fn integrate<L: Lanes>(&self, interval: [L::Ints; F], fields: &[Cubic<L>; F], length_mm: L) -> Integral<L>;
-
-    /// Bytes in memory.
-    fn bytes(&self) -> usize;
 }
 
 /// A function of the value alone.
@@ -98,12 +95,6 @@ impl Function<1> for OfValue {
             },
         );
         Optics { emission: [r, g, b], extinction }.integrate(length_mm)
-    }
-
-    fn bytes(&self) -> usize {
-        self.axis.bytes()
-            + self.low.iter().chain(&self.slope).map(Table::bytes).sum::<usize>()
-            + self.lit_before.bytes()
     }
 }
 
@@ -227,10 +218,5 @@ impl Function<2> for OfValueAndMagnitude {
             },
         );
         Optics { emission: [r, g, b], extinction }.integrate(length_mm)
-    }
-
-    fn bytes(&self) -> usize {
-        let tables = self.patches.iter().flatten().map(Table::bytes).sum::<usize>();
-        self.values.bytes() + self.magnitudes.bytes() + tables + self.lit_below.bytes()
     }
 }

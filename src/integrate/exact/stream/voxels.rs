@@ -18,7 +18,7 @@ pub(in crate::integrate::exact) struct Voxels<'a, V> {
 
 /// The lower corners of cells, voxel indices.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Corners<I> {
+pub(in crate::integrate::exact) struct Corners<I> {
     pub(super) cell: [I; 3],
     /// Of the voxel, in memory.
     pub(super) base: I,
@@ -44,12 +44,6 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
 
     pub(super) fn dims(&self) -> [usize; 3] {
         self.dims
-    }
-
-    /// Place in memory of a voxel.
-    #[inline(always)]
-    pub(super) fn base(&self, [i, j, k]: [usize; 3]) -> usize {
-        i + self.dims[0] * (j + self.dims[1] * k)
     }
 
     /// Stored samples at the corners of cells, x fastest.
