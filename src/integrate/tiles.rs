@@ -57,29 +57,22 @@ struct Tile<'p> {
     rows: Vec<&'p mut [[f32; 4]]>,
 }
 
-/// Renders all pixels, the rays of a tile at once: `trace` gives the light along each, `None` where it misses the volume.
-pub(super) fn render_whole(
-    frame: &Frame<'_>,
-    trace: impl Fn(&[Ray], &mut [Option<Radiance>]) + Sync,
-) -> (Image, Tally) {
-    let camera = &frame.scene.camera;
-    render_tiles(
-        frame,
-        || (Vec::new(), Vec::new()),
-        |(rays, lights): &mut (Vec<Ray>, Vec<_>), tile, tally| {
-            rays.clear();
-            for (y, row) in tile.rows.iter().enumerate() {
-                rays.extend((0..row.len()).map(|x| camera.pixel_ray(tile.column + x, tile.row + y)));
-            }
-            lights.clear();
-            lights.resize(rays.len(), None);
-            trace(rays, lights);
-            for (out, light) in tile.rows.iter_mut().flat_map(|row| row.iter_mut()).zip(lights) {
-                light.iter().for_each(|l| tally.count(l));
-                *out = over(*light, frame.scene.background);
-            }
-        },
-    )
+/// Traces rays `0..count`, given by the first function; the second takes the light of each that meets the volume.
+pub(super) type TraceAll<'t> = &'t (dyn Fn(usize, &dyn Fn(usize) -> Ray, &mut dyn FnMut(usize, Radiance)) + Sync);
+
+/// Renders all pixels, the rays of a tile at once.
+pub(super) fn render_whole(frame: &Frame<'_>, trace: TraceAll<'_>) -> (Image, Tally) {
+    let (camera, background) = (&frame.scene.camera, frame.scene.background);
+    let nothing = || ();
+    render_tiles(frame, nothing, |(), tile, tally| {
+        let (column, row, across) = (tile.column, tile.row, tile.rows[0].len());
+        tile.rows.iter_mut().for_each(|pixels| pixels.fill(over(None, background)));
+        let ray = |n: usize| camera.pixel_ray(column + n % across, row + n / across);
+        trace(across * tile.rows.len(), &ray, &mut |n, light| {
+            tally.count(&light);
+            tile.rows[n / across][n % across] = over(Some(light), background);
+        });
+    })
 }
 
 /// Renders all pixels: `pixel` gives the light along the ray through `(column, row)`, `None` where it misses the volume;

@@ -15,7 +15,7 @@ fn a_file_of_slicers_becomes_presets_that_render() {
     let presets = folder.path("presets");
     let listed = pellucid(&["presets", "import", &slicer("presets.xml"), "-o", &presets]).success();
     let files: Vec<&str> = listed.stdout.lines().collect();
-    assert_eq!(files.len(), 20, "found {files:?}");
+    assert_eq!(files.len(), 22, "found {files:?}");
     listed.says(&["ct-aaa: ", "points; opacity and colour within"]);
     let bone = folder.path("presets/ct-bone.yaml");
     pellucid(&["presets", "check", &bone]).success();

@@ -62,14 +62,14 @@ fn many_rays_at_once_are_each_as_if_alone() {
     for (n, (volume, scene)) in scenes().iter().enumerate() {
         let tracer = tracer(volume, scene, TOLERANCE, Precision::Single);
         let [width, height] = scene.camera.size();
-        let rays: Vec<_> = (0..width * height).map(|p| scene.camera.pixel_ray(p % width, p / width)).collect();
-        let mut together = vec![None; rays.len()];
-        tracer.trace_all(&rays, &mut together);
+        let ray = |pixel: usize| scene.camera.pixel_ray(pixel % width, pixel / width);
+        let mut together = vec![None; width * height];
+        tracer.trace_all(width * height, &ray, &mut |pixel, traced| together[pixel] = Some(traced));
         assert!(together.iter().any(Option::is_some), "scene {n}: no ray meets the volume");
-        for (pixel, (ray, together)) in rays.iter().zip(&together).enumerate() {
+        for (pixel, together) in together.iter().enumerate() {
             let light =
                 |traced: pellucid::integrate::exact::Traced| (traced.radiance, traced.transmittance, traced.bound);
-            assert_eq!(tracer.trace(ray).map(light), together.map(light), "scene {n}, pixel {pixel}");
+            assert_eq!(tracer.trace(&ray(pixel)).map(light), together.map(light), "scene {n}, pixel {pixel}");
         }
     }
 }

@@ -89,7 +89,7 @@ fn a_broken_file_says_where() {
         ("lines.vp", &vp, "0.9\n", "", &["lines.vp", "8 lines", "expected 9"]),
         ("shade.vp", &vp, "1\n1\n", "1\nyes\n", &["shade.vp:2", "shade", "found yes"]),
         ("cut.xml", &xml, "</MRML>", "", &["cut.xml", "not valid XML"]),
-        ("count.xml", &xml, "8 -3024 0 -16.4458", "8 -3024 -16.4458", &["count.xml:15", "CT-Bone", "scalarOpacity"]),
+        ("count.xml", &xml, "8 -3024 0 -16.4458", "8 -3024 -16.4458", &["count.xml:16", "CT-Bone", "scalarOpacity"]),
         ("none.xml", &xml, "VolumeProperty", "Property", &["none.xml", "no volume property"]),
         ("comma.vp.json", &json, "\"shade\"", "shade\"", &["comma.vp.json:", "not of the form"]),
         ("opacity.vp.json", &json, "0.125,", "1.125,", &["scalarOpacity.points", "point 2", "1.125"]),

@@ -66,8 +66,8 @@ fn deviation(published: &Published, bound: f64, colors: ColorNumbers, values: im
             ColorNumbers::Light => c,
         });
         let color: Vec<f64> = color.collect();
-        // Opacity 1 of the unit distance is that of any length.
-        let of_unit = line(&published.opacity, hu)[0];
+        // What is said to be opaque lets 2^-24 through (`math::extinction_per_mm`), so that its extinction is finite.
+        let of_unit = line(&published.opacity, hu)[0].min(1.0 - 2f64.powi(-24));
         let of_length = |length_mm: f64| {
             let opacity = 1.0 - (1.0 - of_unit).powf(length_mm);
             let expected = [opacity, opacity * color[0], opacity * color[1], opacity * color[2]];

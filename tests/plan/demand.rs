@@ -66,10 +66,12 @@ fn a_layer_of_no_strength_is_left_out() {
 }
 
 #[test]
-fn only_marching_reads_macrocells() {
-    assert!(plan("integrate: { march: { step_voxels: 1 } }\n").demand.macrocells);
-    for other in ["exact", "reference"] {
-        let plan = plan(&format!("integrate: {other}\n"));
+fn macrocells_are_read_by_what_skips_blocks() {
+    for method in ["{ march: { step_voxels: 1 } }", "exact"] {
+        assert!(plan(&format!("integrate: {method}\n")).demand.macrocells, "{method} skips blocks");
+    }
+    for other in ["integrate: exact\neffects: { shading: {} }", "integrate: reference"] {
+        let plan = plan(&format!("{other}\n"));
         assert!(!plan.demand.macrocells, "{other} skips cell by cell, or not at all");
         assert!(plan.not_computed.iter().any(|o| o.what == "macrocells"), "{other} says so");
     }

@@ -69,17 +69,11 @@ pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rende
             .expected("a finite number above 0, such as 1/255"));
     }
     let tracer = tracer_at(frame.schedule.level, frame.volume, frame.scene, tolerance, Precision::Single);
-    let (image, tally) = tiles::render_whole(frame, |rays, lights| {
-        let mut traced = vec![None; rays.len()];
-        tracer.trace_all(rays, &mut traced);
-        for (light, traced) in lights.iter_mut().zip(traced) {
-            *light = traced.map(|traced| Radiance {
-                color: traced.radiance,
-                transmittance: traced.transmittance,
-                samples: traced.pieces,
-                error_bound: traced.bound,
-            });
-        }
+    let (image, tally) = tiles::render_whole(frame, &|count, ray, put| {
+        tracer.trace_all(count, ray, &mut |n, traced| {
+            let Traced { radiance, transmittance, pieces, bound, .. } = traced;
+            put(n, Radiance { color: radiance, transmittance, samples: pieces, error_bound: bound });
+        });
     });
     let statistics = Statistics {
         samples: tally.samples,
@@ -103,10 +97,13 @@ pub enum Precision {
 pub trait Tracer: Sync {
     /// The light of a ray, with its bound; `None` if it misses the volume.
     fn trace(&self, ray: &Ray) -> Option<Traced>;
-    /// The light of several rays, each as if it were traced alone; `traced` is as long as `rays`.
-    fn trace_all(&self, rays: &[Ray], traced: &mut [Option<Traced>]) {
-        for (ray, traced) in rays.iter().zip(traced) {
-            *traced = self.trace(ray);
+    /// The light of rays `0..count`, each as if it were traced alone: `ended` takes it, in any order, of those that meet the
+    /// volume.
+    fn trace_all(&self, count: usize, ray: &dyn Fn(usize) -> Ray, ended: &mut dyn FnMut(usize, Traced)) {
+        for n in 0..count {
+            if let Some(traced) = self.trace(&ray(n)) {
+                ended(n, traced);
+            }
         }
     }
 

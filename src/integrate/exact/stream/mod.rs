@@ -62,16 +62,16 @@ where
     Read: Fields<F>,
 {
     fn trace(&self, ray: &Ray) -> Option<Traced> {
-        let mut traced = [None];
-        self.trace_all(std::slice::from_ref(ray), &mut traced);
-        traced[0]
+        let mut found = None;
+        self.trace_all(1, &|_| *ray, &mut |_, traced| found = Some(traced));
+        found
     }
 
-    fn trace_all(&self, rays: &[Ray], traced: &mut [Option<Traced>]) {
+    fn trace_all(&self, count: usize, ray: &dyn Fn(usize) -> Ray, ended: &mut dyn FnMut(usize, Traced)) {
         thread_local! {
             static SPLITS: RefCell<Splits<f64>> = RefCell::default();
         }
-        SPLITS.with_borrow_mut(|splits| self.level.run(Rounds { stream: self, rays, traced, splits }));
+        SPLITS.with_borrow_mut(|splits| self.level.run(Rounds { stream: self, count, ray, ended, splits }));
     }
 
     fn kernel(&self) -> &str {
@@ -82,8 +82,9 @@ where
 /// Rays to trace, and where their light goes.
 struct Rounds<'r, 'a, V, T, D, const F: usize> {
     stream: &'r Stream<'a, V, T, D, F>,
-    rays: &'r [Ray],
-    traced: &'r mut [Option<Traced>],
+    count: usize,
+    ray: &'r dyn Fn(usize) -> Ray,
+    ended: &'r mut dyn FnMut(usize, Traced),
     splits: &'r mut Splits<f64>,
 }
 
@@ -98,23 +99,24 @@ where
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Rounds { stream, rays, traced, splits } = self;
+        let Rounds { stream, count, ray: ray_of, ended, splits } = self;
         let mut walks = Walks::new(stream.voxels.dims());
         let mut passed = Passed::new();
         let (mut whole, mut cut) = (Shown::<F>::new(), Shown::<F>::new());
         let mut results = Results::new();
         let mut flying: [Option<InFlight>; RAYS] = [const { None }; RAYS];
-        let mut waiting = rays.iter().enumerate();
+        let mut waiting = 0..count;
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         loop {
             for (seat, ray) in flying.iter_mut().enumerate() {
-                if let Some(ended) = ray.take_if(|ray| ray.traced.is_some()) {
-                    traced[ended.number] = ended.traced;
+                if let Some((number, traced)) = ray.as_ref().and_then(|ray| Some((ray.number, ray.traced?))) {
+                    ended(number, traced);
                     walks.leave(seat);
+                    *ray = None;
                 }
                 while ray.is_none() {
-                    let Some((number, next)) = waiting.next() else { break };
-                    if let Some(chord) = stream.chord(next) {
+                    let Some(number) = waiting.next() else { break };
+                    if let Some(chord) = stream.chord(&ray_of(number)) {
                         walks.enter(seat, &chord);
                         *ray = Some(InFlight { light: Front::new(stream.frame.tolerance), number, traced: None });
                     }
