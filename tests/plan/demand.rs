@@ -70,7 +70,7 @@ fn macrocells_are_read_by_what_skips_blocks() {
     for method in ["{ march: { step_voxels: 1 } }", "exact"] {
         assert!(plan(&format!("integrate: {method}\n")).demand.macrocells, "{method} skips blocks");
     }
-    for other in ["integrate: exact\neffects: { shading: {} }", "integrate: reference"] {
+    for other in ["integrate: exact\neffects: { haze: { extinction_per_mm: 0.001 } }", "integrate: reference"] {
         let plan = plan(&format!("{other}\n"));
         assert!(!plan.demand.macrocells, "{other} skips cell by cell, or not at all");
         assert!(plan.not_computed.iter().any(|o| o.what == "macrocells"), "{other} says so");
