@@ -8,8 +8,8 @@ use pellucid::simd::Level;
 use pellucid::transfer::Term;
 use pellucid::volume::Volume;
 
-use crate::march::scenes::{blobs_f32, blobs_i16, scene, tissue_1d, tissue_2d};
-use crate::support::scenes::{rough_volume, scene_around, thin_shell, two_colors};
+use crate::march::scenes::{blobs_f32, blobs_i16, scene, tissue_1d, tissue_2d, two_lights as lit};
+use crate::support::scenes::{rough_volume, scene_around, thin_shell, two_colors, two_lights};
 
 const TOLERANCE: f64 = 1e-3;
 
@@ -26,6 +26,9 @@ fn scenes() -> Vec<(Volume, Scene)> {
         (shorts.clone(), scene(&shorts, tissue_1d(), None)),
         (shorts.clone(), scene(&shorts, tissue_2d(), None)),
         (floats.clone(), scene(&floats, tissue_2d(), None)),
+        (rough.clone(), scene_around(&rough, vec![two_colors()], Some(two_lights(true)), [41, 29])),
+        (rough.clone(), scene_around(&rough, vec![thin_shell(), two_colors()], Some(two_lights(false)), [23, 17])),
+        (shorts.clone(), scene(&shorts, tissue_2d(), Some(lit()))),
     ]
 }
 

@@ -24,6 +24,12 @@ impl Budget {
         Budget { tolerance, spent: 0.0 }
     }
 
+    /// What pieces may cost so that all of them together keep to the account: a share of what each absorbs, and one to be
+    /// shared out by length.
+    pub(super) fn of_pieces(tolerance: f64) -> [f64; 2] {
+        [BY_ABSORPTION * tolerance, BY_LENGTH * tolerance]
+    }
+
     /// What may still be spent by pieces up to a point with this transmittance, this fraction of the ray behind it.
     pub(super) fn left(&self, transmittance: f64, fraction: f64) -> f64 {
         self.tolerance * (BY_ABSORPTION * (1.0 - transmittance) + BY_LENGTH * fraction) - self.spent

@@ -51,7 +51,7 @@ use ray::{Brightest, Frame};
 use shade::{Lit, Unlit};
 use shown::Shown;
 use splits::Splits;
-use stream::{Fields, Function, OfValue, OfValueAndMagnitude, Read, Stream, Voxels};
+use stream::{Fields, Function, Lighting, OfValue, OfValueAndMagnitude, Read, Stream, Voxels};
 
 pub use ray::Traced;
 pub(super) use toward_light::{TowardLight, toward_light};
@@ -230,8 +230,14 @@ impl<'a> Of<'a> {
     /// The voxels as the fast kernel reads them, where it renders the scene.
     fn voxels<V: Voxel + Pairs>(&self, samples: &'a [V]) -> Option<Voxels<'a, V>> {
         let Of { volume, scene, .. } = *self;
-        let plain = scene.model == Model::Light && !scene.effects.change_light() && scene.shading.is_none();
-        plain.then(|| Voxels::new(volume, samples)).flatten()
+        let plain = scene.model == Model::Light && !scene.effects.change_light();
+        let can_be_lit = scene.shading.is_none() || self.lighting().is_some();
+        (plain && can_be_lit).then(|| Voxels::new(volume, samples)).flatten()
+    }
+
+    /// The shading as the fast kernel has it; `None` for none, and for one that it does not have.
+    fn lighting(&self) -> Option<Lighting> {
+        Lighting::new(self.scene.shading.as_ref()?, Brightest::of(self.scene).color)
     }
 
     /// The fast kernel.
@@ -250,13 +256,15 @@ impl<'a> Of<'a> {
         D: Medium<f64> + 'a,
         Read: Fields<F>,
     {
+        let lighting = self.lighting();
         let Of { volume, scene, tolerance, voxel, level } = self;
         let everything = [0.0, f32::MAX];
         let occupancy = voxels.occupancy(|range| !classifier.is_empty(range, everything));
         let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest: Brightest::of(scene) };
         let (grid, clip) = (volume.grid(), &scene.effects.clip);
-        let name = format!("exact/{voxel}/{name}/unlit/{level}");
-        Box::new(Stream { level, frame, grid, clip, voxels, occupancy, function, double, name })
+        let lit = if lighting.is_some() { "lit" } else { "unlit" };
+        let name = format!("exact/{voxel}/{name}/{lit}/{level}");
+        Box::new(Stream { level, frame, grid, clip, voxels, occupancy, function, lighting, double, name })
     }
 
     /// The kernel for a medium: by its effects of light, its shading, or the optical depth alone. `single` is the same medium

@@ -240,6 +240,11 @@ impl Front {
         self.transmittance
     }
 
+    /// What the budget still allows up to a fraction of the ray, without absorbing any further.
+    pub(super) fn left(&self, fraction: f64) -> f64 {
+        self.budget.left(self.transmittance, fraction)
+    }
+
     /// Whether the ray may end with an error of at most `rest`.
     #[inline(always)]
     pub(super) fn may_end(&self, rest: f64) -> bool {

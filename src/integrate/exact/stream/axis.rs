@@ -37,6 +37,16 @@ impl Axis {
         }
     }
 
+    /// An axis with one knot, at which nothing jumps.
+    pub(super) fn at(knot: f32) -> Self {
+        Axis {
+            knots: vec![knot],
+            ends: Table::new(&[-FAR, knot, FAR]),
+            anchors: Table::new(&[knot, knot]),
+            steep: None,
+        }
+    }
+
     /// Number of intervals, those beyond the ends included.
     pub(super) fn intervals(&self) -> usize {
         self.knots.len() + 1

@@ -1,5 +1,7 @@
 //! Rays in flight: what reaches the eye so far, and what cells add to it.
 
+use glam::DVec3;
+
 use super::queue::{Passed, Results};
 use super::walk::Walks;
 use crate::integrate::exact::ray::{Front, Traced};
@@ -8,6 +10,8 @@ use crate::integrate::exact::ray::{Front, Traced};
 #[derive(Debug)]
 pub(super) struct InFlight {
     pub(super) light: Front,
+    /// The ray's.
+    pub(super) direction: DVec3,
     /// Which of the rays asked for.
     pub(super) number: usize,
     /// How it ended, once it did.
@@ -23,7 +27,7 @@ pub(super) fn composite(
     walks: &Walks,
     rays: &mut [Option<InFlight>],
     rest: impl Fn(f64, f64) -> f64,
-    mut again: impl FnMut(usize, &mut Front, [i32; 3]),
+    mut again: impl FnMut(usize, DVec3, &mut Front, [i32; 3]),
 ) {
     for slot in results.slots() {
         let seat = passed.seat[slot] as usize;
@@ -37,7 +41,7 @@ pub(super) fn composite(
         let pieces = results.pieces[slot] as u64;
         if !ray.light.take([r[slot], g[slot], b[slot]], absorbed, error, exit_mm * walks.per_length_mm(seat), pieces) {
             let [i, j, k] = &passed.cell;
-            again(seat, &mut ray.light, [i[slot], j[slot], k[slot]]);
+            again(seat, ray.direction, &mut ray.light, [i[slot], j[slot], k[slot]]);
         }
         let rest = rest(ray.light.transmittance(), length_mm - exit_mm);
         ray.traced = ray.light.may_end(rest).then(|| ray.light.ended(rest));

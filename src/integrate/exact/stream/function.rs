@@ -1,6 +1,7 @@
 //! Transfer functions for lanes: polynomials of the fields along a piece, and where there is nothing.
 
 use super::axis::Axis;
+use super::light::Finish;
 use crate::classify::{OneD, TwoD};
 use crate::integrate::exact::piece::{Integral, Optics};
 use crate::math::bernstein::{Cubic, elevate, product};
@@ -19,7 +20,13 @@ pub(in crate::integrate::exact) trait Function<const F: usize>: Sync {
     fn is_empty<L: Lanes>(&self, first: [L::Ints; F], last: [L::Ints; F]) -> L::Mask;
 
     /// The integral over a piece on which each field stays in one interval.
-    fn integrate<L: Lanes>(&self, interval: [L::Ints; F], fields: &[Cubic<L>; F], length_mm: L) -> Integral<L>;
+    fn integrate<L: Lanes>(
+        &self,
+        interval: [L::Ints; F],
+        fields: &[Cubic<L>; F],
+        length_mm: L,
+        finish: &impl Finish<L>,
+    ) -> Integral<L>;
 }
 
 /// A function of the value alone.
@@ -78,7 +85,13 @@ impl Function<1> for OfValue {
     }
 
     #[inline(always)]
-    fn integrate<L: Lanes>(&self, [i]: [L::Ints; 1], [value]: &[Cubic<L>; 1], length_mm: L) -> Integral<L> {
+    fn integrate<L: Lanes>(
+        &self,
+        [i]: [L::Ints; 1],
+        [value]: &[Cubic<L>; 1],
+        length_mm: L,
+        finish: &impl Finish<L>,
+    ) -> Integral<L> {
         let anchor = self.axis.anchor::<L>(i);
         let dv: Cubic<L> = each(
             #[inline(always)]
@@ -94,7 +107,7 @@ impl Function<1> for OfValue {
                 )
             },
         );
-        Optics { emission: [r, g, b], extinction }.integrate(length_mm)
+        finish.finish::<4, 5>(&Optics { emission: [r, g, b], extinction }, length_mm)
     }
 }
 
@@ -193,6 +206,7 @@ impl Function<2> for OfValueAndMagnitude {
         [i, j]: [L::Ints; 2],
         [value, magnitude]: &[Cubic<L>; 2],
         length_mm: L,
+        finish: &impl Finish<L>,
     ) -> Integral<L> {
         let (v_anchor, g_anchor) = (self.values.anchor::<L>(i), self.magnitudes.anchor::<L>(j));
         let dv: Cubic<L> = each(
@@ -217,6 +231,6 @@ impl Function<2> for OfValueAndMagnitude {
                 )
             },
         );
-        Optics { emission: [r, g, b], extinction }.integrate(length_mm)
+        finish.finish::<7, 8>(&Optics { emission: [r, g, b], extinction }, length_mm)
     }
 }

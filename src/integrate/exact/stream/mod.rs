@@ -13,6 +13,8 @@
 mod axis;
 mod front;
 mod function;
+mod light;
+mod lit;
 mod look;
 mod pieces;
 mod queue;
@@ -21,10 +23,13 @@ mod walk;
 
 use std::cell::RefCell;
 
+use glam::DVec3;
+
 use super::Tracer;
+use super::budget::Budget;
 use super::medium::Medium;
 use super::ray::{Frame, Front, Traced};
-use super::shade::Unlit;
+use super::shade::{Lit, Unlit};
 use super::splits::Splits;
 use crate::field::{Chord, Voxel};
 use crate::integrate::occupancy::Occupancy;
@@ -32,11 +37,14 @@ use crate::scene::{Clip, Ray};
 use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
 use front::{InFlight, composite};
+use light::Seen;
+use lit::{Allowance, Scenery, lit};
 use look::look;
 use queue::{Passed, Results, Shown};
-use walk::{RAYS, Walks};
+use walk::{RAYS, STEPS, Walks};
 
 pub(super) use function::{Function, OfValue, OfValueAndMagnitude};
+pub(super) use light::Lighting;
 pub(super) use look::{Fields, Read};
 pub(super) use voxels::Voxels;
 
@@ -49,6 +57,7 @@ pub(super) struct Stream<'a, V, T, D, const F: usize> {
     pub(super) voxels: Voxels<'a, V>,
     pub(super) occupancy: Occupancy,
     pub(super) function: T,
+    pub(super) lighting: Option<Lighting>,
     /// The twin in f64.
     pub(super) double: D,
     pub(super) name: String,
@@ -107,6 +116,10 @@ where
         let mut flying: [Option<InFlight>; RAYS] = [const { None }; RAYS];
         let mut waiting = 0..count;
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
+        let mut seen = Seen::new();
+        let [by_absorption, per_ray] = Budget::of_pieces(stream.frame.tolerance);
+        let mut allowance =
+            Allowance { by_absorption: by_absorption as f32, per_mm: [0.0; RAYS], per_cell: [0.0; RAYS] };
         loop {
             for (seat, ray) in flying.iter_mut().enumerate() {
                 if let Some((number, traced)) = ray.as_ref().and_then(|ray| Some((ray.number, ray.traced?))) {
@@ -116,9 +129,14 @@ where
                 }
                 while ray.is_none() {
                     let Some(number) = waiting.next() else { break };
-                    if let Some(chord) = stream.chord(&ray_of(number)) {
+                    let next = ray_of(number);
+                    if let Some(chord) = stream.chord(&next) {
                         walks.enter(seat, &chord);
-                        *ray = Some(InFlight { light: Front::new(stream.frame.tolerance), number, traced: None });
+                        if let Some(lighting) = &stream.lighting {
+                            seen.enter(seat, &next, &lighting.shading);
+                        }
+                        let light = Front::new(stream.frame.tolerance);
+                        *ray = Some(InFlight { light, direction: next.direction, number, traced: None });
                     }
                 }
             }
@@ -128,8 +146,23 @@ where
             walks.pass::<L>(&stream.occupancy, &mut passed);
             results.clear();
             look::<L, V, F>(&passed, &stream.voxels, &stream.function, &mut whole, &mut cut);
-            pieces::whole::<L, F>(&whole, &stream.function, &mut results);
-            pieces::cut::<L, F>(&cut, &stream.function, harm_per_mm, &mut results);
+            if let Some(lighting) = &stream.lighting {
+                for (seat, ray) in flying.iter().enumerate() {
+                    let Some(ray) = ray else { continue };
+                    // What is behind counts the less the less light gets there.
+                    let counts = ray.light.transmittance() / walks.per_length_mm(seat);
+                    allowance.per_mm[seat] = (per_ray / counts) as f32;
+                    let left = ray.light.left(walks.done(seat)) / ray.light.transmittance();
+                    allowance.per_cell[seat] = (left.max(0.0) / STEPS as f64) as f32;
+                }
+                let (passed, voxels, seen, allowance) = (&passed, &stream.voxels, &seen, &allowance);
+                let scenery = Scenery { passed, voxels, lighting, seen, allowance, harm_per_mm };
+                lit::<L, V, F>(&whole, &stream.function, &scenery, &mut results);
+                lit::<L, V, F>(&cut, &stream.function, &scenery, &mut results);
+            } else {
+                pieces::whole::<L, F>(&whole, &stream.function, &mut results);
+                pieces::cut::<L, F>(&cut, &stream.function, harm_per_mm, &mut results);
+            }
             composite(
                 &passed,
                 &results,
@@ -137,7 +170,7 @@ where
                 &mut flying,
                 #[inline(always)]
                 |transmittance, rest_mm| stream.frame.of_rest(transmittance, rest_mm),
-                |seat, light, cell| stream.again(&walks, seat, cell, light, splits),
+                |seat, direction, light, cell| stream.again(&walks, seat, cell, direction, light, splits),
             );
         }
     }
@@ -157,9 +190,23 @@ where
 
     /// Integrates a cell with its twin.
     #[inline(never)]
-    fn again(&self, walks: &Walks, seat: usize, cell: [i32; 3], light: &mut Front, splits: &mut Splits<f64>) {
+    fn again(
+        &self,
+        walks: &Walks,
+        seat: usize,
+        cell: [i32; 3],
+        direction: DVec3,
+        light: &mut Front,
+        splits: &mut Splits<f64>,
+    ) {
         let segment = walks.segment(seat, cell);
         let fraction = |at_mm: f64| walks.fraction(seat, at_mm);
-        self.frame.pass(&segment, fraction, &self.double, &Unlit, splits, light);
+        match &self.lighting {
+            None => self.frame.pass(&segment, fraction, &self.double, &Unlit, splits, light),
+            Some(lighting) => {
+                let lit = Lit::<f64>::new(&lighting.shading, direction, self.frame.brightest.color);
+                self.frame.pass(&segment, fraction, &self.double, &lit, splits, light);
+            }
+        }
     }
 }

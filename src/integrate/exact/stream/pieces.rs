@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::function::Function;
+use super::light::AsItIs;
 use super::look::ROUNDINGS;
 use super::queue::{Results, Shown};
 use crate::integrate::exact::piece::Integral;
@@ -25,7 +26,7 @@ pub(super) fn whole<L: Lanes, const F: usize>(shown: &Shown<F>, function: &impl 
         for f in 0..F {
             interval[f] = L::Ints::load(&shown.interval[f][first..]);
         }
-        let integral = function.integrate(interval, &fields, L::load(&shown.length_mm[first..]));
+        let integral = function.integrate(interval, &fields, L::load(&shown.length_mm[first..]), &AsItIs);
         put(results, shown, first, &integral, L::ONE);
     }
 }
@@ -70,7 +71,7 @@ pub(super) fn cut<L: Lanes, const F: usize>(
                 interval[f] = runs[f].interval;
                 parts[f] = restrict(&fields[f], from, to);
             }
-            let piece = function.integrate(interval, &parts, length_mm * (to - from));
+            let piece = function.integrate(interval, &parts, length_mm * (to - from), &AsItIs);
             for c in 0..3 {
                 total.radiance[c] += transmittance * piece.radiance[c];
             }
@@ -90,7 +91,7 @@ pub(super) fn cut<L: Lanes, const F: usize>(
 }
 
 #[inline(always)]
-fn load_fields<L: Lanes, const F: usize>(shown: &Shown<F>, first: usize) -> [Cubic<L>; F] {
+pub(super) fn load_fields<L: Lanes, const F: usize>(shown: &Shown<F>, first: usize) -> [Cubic<L>; F] {
     each(
         #[inline(always)]
         |f| {
@@ -103,7 +104,7 @@ fn load_fields<L: Lanes, const F: usize>(shown: &Shown<F>, first: usize) -> [Cub
 }
 
 #[inline(always)]
-fn put<L: Lanes, const F: usize>(
+pub(super) fn put<L: Lanes, const F: usize>(
     results: &mut Results,
     shown: &Shown<F>,
     first: usize,
@@ -130,20 +131,20 @@ fn put<L: Lanes, const F: usize>(
 
 /// A field on its way through a cell: from one critical point to the next it is monotone, and passes its intervals in order.
 #[derive(Clone, Copy)]
-struct Run<L: Lanes> {
+pub(super) struct Run<L: Lanes> {
     cubic: Cubic<L>,
     /// Critical points, ascending; 1 where there is none.
     critical: [L; 2],
     /// The value where the cell has been passed to.
     at: L,
-    interval: L::Ints,
+    pub(super) interval: L::Ints,
     rounding: L,
 }
 
 /// Where a field's interval, or its direction, next changes.
 #[derive(Clone, Copy)]
-struct Next<L: Lanes> {
-    to: L,
+pub(super) struct Next<L: Lanes> {
+    pub(super) to: L,
     /// The value there.
     value: L,
     crosses: L::Mask,
@@ -154,7 +155,7 @@ struct Next<L: Lanes> {
 
 impl<L: Lanes> Run<L> {
     #[inline(always)]
-    fn new(cubic: Cubic<L>, axis: &Axis) -> Self {
+    pub(super) fn new(cubic: Cubic<L>, axis: &Axis) -> Self {
         let critical = critical_points(&cubic);
         let first_end = value(&cubic, critical[0]);
         let rises = cubic[0].le(first_end);
@@ -165,7 +166,7 @@ impl<L: Lanes> Run<L> {
     }
 
     #[inline(always)]
-    fn next(&self, axis: &Axis, from: L) -> Next<L> {
+    pub(super) fn next(&self, axis: &Axis, from: L) -> Next<L> {
         let [first, second] = self.critical;
         let turn = L::select(from.lt(first), first, L::select(from.lt(second), second, L::ONE));
         let there = value(&self.cubic, turn);
@@ -185,7 +186,7 @@ impl<L: Lanes> Run<L> {
 
     /// Whether a cut at `to` is where a steep knot is crossed, or all but crossed, at an angle so flat that rounding matters.
     #[inline(always)]
-    fn is_misplaced(&self, axis: &Axis, next: &Next<L>, to: L, harm: L) -> L::Mask {
+    pub(super) fn is_misplaced(&self, axis: &Axis, next: &Next<L>, to: L, harm: L) -> L::Mask {
         let Some(steep) = axis.steep() else { return L::ONE.lt(L::ZERO) };
         let here = next.to.le(to);
         let flat = slope(&self.cubic, to).abs().lt(harm * self.rounding);
@@ -201,7 +202,7 @@ impl<L: Lanes> Run<L> {
     }
 
     #[inline(always)]
-    fn advance(&mut self, next: &mut Next<L>, to: L) {
+    pub(super) fn advance(&mut self, next: &mut Next<L>, to: L) {
         let here = next.to.le(to);
         let crossed = here.and(next.crosses);
         let (up, down) = (self.interval + L::Ints::splat(1), self.interval - L::Ints::splat(1));

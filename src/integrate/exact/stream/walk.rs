@@ -14,7 +14,7 @@ use crate::simd::{Doubles, Ints, Lanes, Mask};
 pub(super) const RAYS: usize = 16;
 
 /// Steps of a ray in a round: few, since what lies behind an opaque cell is looked at in vain.
-const STEPS: usize = 24;
+pub(super) const STEPS: usize = 24;
 
 /// Rays inside a volume, one per seat.
 #[derive(Debug)]
@@ -31,6 +31,8 @@ pub(super) struct Walks {
     per_length_mm: [f64; RAYS],
     /// How far each has come.
     at_mm: [f64; RAYS],
+    /// How far each had come a round before.
+    settled_mm: [f64; RAYS],
     /// Each stays in the same block, or among empty ones, up to here.
     until_mm: [f64; RAYS],
     cell: [[i32; RAYS]; 3],
@@ -51,6 +53,7 @@ impl Walks {
             exit_mm: [0.0; RAYS],
             per_length_mm: [0.0; RAYS],
             at_mm: [0.0; RAYS],
+            settled_mm: [0.0; RAYS],
             until_mm: [0.0; RAYS],
             cell: [[0; RAYS]; 3],
             next_mm: [[0.0; RAYS]; 3],
@@ -97,6 +100,11 @@ impl Walks {
     #[inline(always)]
     pub(super) fn per_length_mm(&self, seat: usize) -> f64 {
         self.per_length_mm[seat]
+    }
+
+    /// The fraction of a ray that it had passed when its cells were last composited.
+    pub(super) fn done(&self, seat: usize) -> f64 {
+        self.fraction(seat, self.settled_mm[seat])
     }
 
     /// The fraction of a ray that lies in front of a distance from its origin.
@@ -148,6 +156,7 @@ impl Walks {
     #[inline(always)]
     pub(super) fn pass<L: Lanes>(&mut self, occupancy: &Occupancy, passed: &mut Passed) {
         passed.count = 0;
+        self.settled_mm = self.at_mm;
         // Every group of seats gets its share of the room.
         let share = CELLS / (RAYS / L::LANES);
         for first in (0..RAYS).step_by(L::LANES) {

@@ -1,0 +1,225 @@
+//! From cubics to shaded light: pieces are cut at the knots and where a light changes sides, and halved until their proven
+//! error is what they may make.
+
+use super::function::Function;
+use super::light::{LIGHTS, Lighting, Lights, Seen, along_light};
+use super::pieces::{Next, Run, load_fields, put};
+use super::queue::{Passed, Results, Shown};
+use super::voxels::{Corners, Voxels};
+use super::walk::RAYS;
+use crate::field::Voxel;
+use crate::integrate::exact::piece::Integral;
+use crate::math::bernstein::{Cubic, restrict, trilinear_along};
+use crate::math::each;
+use crate::simd::{Ints, Lanes, Mask, Pairs};
+
+/// A piece is not made shorter than this fraction of a cell; what it then costs is charged to the bound.
+const SMALLEST_PIECE: f64 = 1.0 / 65536.0;
+
+/// Attempts at the pieces between two cuts, after which a cell is left to the twin.
+const MOST_ATTEMPTS: usize = 300;
+
+/// What pieces may cost: so much of what they absorb, and by seat so much per mm, and so much per cell of what earlier ones
+/// left.
+#[derive(Debug, Clone)]
+pub(super) struct Allowance {
+    pub(super) by_absorption: f32,
+    pub(super) per_mm: [f32; RAYS],
+    pub(super) per_cell: [f32; RAYS],
+}
+
+/// What is the same for all cells of a round.
+pub(super) struct Scenery<'s, 'v, V> {
+    pub(super) passed: &'s Passed,
+    pub(super) voxels: &'s Voxels<'v, V>,
+    pub(super) lighting: &'s Lighting,
+    pub(super) seen: &'s Seen,
+    pub(super) allowance: &'s Allowance,
+    pub(super) harm_per_mm: f32,
+}
+
+/// What lanes have besides their fields.
+struct Cells<L> {
+    gradient: [Cubic<L>; 3],
+    lights: Lights<L>,
+    allowed_per_mm: L,
+    allowed_per_cell: L,
+}
+
+impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
+    /// Reads the gradients of cells, and how their rays see the lights.
+    #[inline(always)]
+    fn cells<L: Lanes>(&self, slots: &[i32]) -> Cells<L> {
+        let mut ints = [[0; 16]; 4];
+        let mut floats = [[0.0; 16]; 8 + 6 * LIGHTS];
+        for (k, &slot) in slots.iter().enumerate().take(L::LANES) {
+            let slot = slot as usize;
+            let seat = self.passed.seat[slot] as usize;
+            ints[3][k] = self.passed.base[slot];
+            floats[6][k] = self.allowance.per_mm[seat];
+            floats[7][k] = self.allowance.per_cell[seat];
+            for a in 0..3 {
+                ints[a][k] = self.passed.cell[a][slot];
+                floats[a][k] = self.passed.from[a][slot];
+                floats[3 + a][k] = self.passed.to[a][slot];
+                for n in 0..self.lighting.lights() {
+                    floats[8 + 6 * n + a][k] = self.seen.towards[n][a][seat];
+                    floats[11 + 6 * n + a][k] = self.seen.half[n][a][seat];
+                }
+            }
+        }
+        let vector =
+            [0, 3].map(|first| [L::load(&floats[first]), L::load(&floats[first + 1]), L::load(&floats[first + 2])]);
+        let [from, to] = vector;
+        let mut lights = Lights { towards: [[L::ZERO; 3]; LIGHTS], half: [[L::ZERO; 3]; LIGHTS] };
+        for n in 0..LIGHTS {
+            for a in 0..3 {
+                lights.towards[n][a] = L::load(&floats[8 + 6 * n + a]);
+                lights.half[n][a] = L::load(&floats[11 + 6 * n + a]);
+            }
+        }
+        let base = L::Ints::load(&ints[3]);
+        let at = Corners { cell: [L::Ints::load(&ints[0]), L::Ints::load(&ints[1]), L::Ints::load(&ints[2])], base };
+        let corners = self.voxels.corners::<L>(base);
+        let gradients = self.voxels.gradients(&at, &corners);
+        let gradient = [
+            trilinear_along(&gradients[0], from, to),
+            trilinear_along(&gradients[1], from, to),
+            trilinear_along(&gradients[2], from, to),
+        ];
+        Cells { gradient, lights, allowed_per_mm: L::load(&floats[6]), allowed_per_cell: L::load(&floats[7]) }
+    }
+}
+
+/// Integrates shaded cells.
+#[inline(always)]
+pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
+    shown: &Shown<F>,
+    function: &impl Function<F>,
+    scenery: &Scenery<'_, '_, V>,
+    results: &mut Results,
+) {
+    let lighting = scenery.lighting;
+    for first in (0..shown.count).step_by(L::LANES) {
+        let fields = load_fields::<L, F>(shown, first);
+        let length_mm = L::load(&shown.length_mm[first..]);
+        let harm = L::from_f64(f64::from(scenery.harm_per_mm)) * length_mm;
+        let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
+        let cells = scenery.cells::<L>(&shown.slot[first..shown.count]);
+        let mut runs: [Run<L>; F] = each(
+            #[inline(always)]
+            |f| Run::new(fields[f], function.axis(f)),
+        );
+        let mut sides: [Run<L>; LIGHTS] = each(
+            #[inline(always)]
+            |n| Run::new(along_light(&cells.gradient, &cells.lights.towards[n]), &lighting.side),
+        );
+        let mut sum = Sum::new();
+        let (mut from, mut misplaced) = (L::ZERO, is_cell.and_not(is_cell));
+        loop {
+            let open = is_cell.and(from.lt(L::ONE));
+            if !open.any() {
+                break;
+            }
+            let mut next: [Next<L>; F] = each(
+                #[inline(always)]
+                |f| runs[f].next(function.axis(f), from),
+            );
+            let mut to = next[0].to;
+            for n in next.iter().skip(1) {
+                to = to.min(n.to);
+            }
+            for n in 0..lighting.lights() {
+                to = to.min(sides[n].next(&lighting.side, from).to);
+            }
+            let mut interval = [L::Ints::splat(0); F];
+            for f in 0..F {
+                interval[f] = runs[f].interval;
+            }
+            let stuck = sum.pass(function, interval, &fields, &cells, scenery, length_mm, open, [from, to]);
+            misplaced = misplaced.or(stuck);
+            for f in 0..F {
+                misplaced = misplaced.or(open.and(runs[f].is_misplaced(function.axis(f), &next[f], to, harm)));
+                runs[f].advance(&mut next[f], to);
+            }
+            for n in 0..lighting.lights() {
+                let mut next = sides[n].next(&lighting.side, from);
+                sides[n].advance(&mut next, to);
+            }
+            from = to;
+        }
+        sum.total.error = L::select(misplaced, L::from_f64(f64::INFINITY), sum.total.error);
+        put(results, shown, first, &sum.total, sum.pieces);
+    }
+}
+
+/// What the pieces of cells add up to.
+struct Sum<L> {
+    total: Integral<L>,
+    transmittance: L,
+    pieces: L,
+}
+
+impl<L: Lanes> Sum<L> {
+    #[inline(always)]
+    fn new() -> Self {
+        let total = Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO };
+        Sum { total, transmittance: L::ONE, pieces: L::ZERO }
+    }
+
+    /// Passes the part between two cuts, in pieces as long as their errors allow. Says which lanes do not get on.
+    #[expect(clippy::too_many_arguments, reason = "a part, what is on it, and what it may cost")]
+    #[inline(always)]
+    fn pass<V: Voxel + Pairs, const F: usize>(
+        &mut self,
+        function: &impl Function<F>,
+        interval: [L::Ints; F],
+        fields: &[Cubic<L>; F],
+        cells: &Cells<L>,
+        scenery: &Scenery<'_, '_, V>,
+        length_mm: L,
+        open: L::Mask,
+        [start, end]: [L; 2],
+    ) -> L::Mask {
+        let by_absorption = L::from_f64(f64::from(scenery.allowance.by_absorption));
+        let (mut from, mut to) = (start, end);
+        for _ in 0..MOST_ATTEMPTS {
+            let under_way = open.and(from.lt(end));
+            if !under_way.any() {
+                return under_way;
+            }
+            let mut parts = *fields;
+            for f in 0..F {
+                parts[f] = restrict(&fields[f], from, to);
+            }
+            let gradient: [Cubic<L>; 3] = each(
+                #[inline(always)]
+                |a| restrict(&cells.gradient[a], from, to),
+            );
+            let shaded = scenery.lighting.shaded(&gradient, &cells.lights);
+            let length = to - from;
+            let piece_mm = length_mm * length;
+            let piece = function.integrate(interval, &parts, piece_mm, &shaded);
+            let allowed =
+                by_absorption * piece.absorbed + cells.allowed_per_mm * piece_mm + cells.allowed_per_cell * length;
+            let accepted = piece.error.le(allowed).or(length.le(L::from_f64(SMALLEST_PIECE)));
+            let counts = under_way.and(accepted);
+            let t = L::select(counts, self.transmittance, L::ZERO);
+            for c in 0..3 {
+                self.total.radiance[c] += t * piece.radiance[c];
+            }
+            self.total.error += t * piece.error;
+            self.total.absorbed += t * piece.absorbed;
+            self.transmittance = self.transmittance - t * piece.absorbed;
+            self.pieces += L::select(under_way, L::ONE, L::ZERO);
+            from = L::select(counts, to, from);
+            // The error falls with the cube of the length, what is allowed with the length. The next piece probably fares like
+            // the last one, but is not left a sliver.
+            let share = (allowed / piece.error).max(L::ZERO).sqrt() * L::from_f64(0.9);
+            let shrunk = length * share.max(L::from_f64(0.05)).min(L::from_f64(0.5));
+            let grown = L::select(accepted, length * L::from_f64(1.5), shrunk);
+            to = L::select((end - from).le(grown), end, from + grown);
+        }
+        open.and(from.lt(end))
+    }
+}
