@@ -22,6 +22,7 @@ use crate::error::{Error, Fault, Result};
 use crate::image::Image;
 use crate::plan::{Method, SampleRule};
 use crate::scene::{ClassifyAt, Model, Scene};
+use crate::simd::Level;
 use crate::volume::Volume;
 
 /// A picture, and what it took.
@@ -42,7 +43,7 @@ pub struct Statistics {
     pub error_bound: Option<f64>,
     /// Rays that met the volume, or haze.
     pub rays: u64,
-    /// The kernel, such as `march/i16/tf2d/lit`.
+    /// The kernel, such as `march/i16/tf2d/lit/avx2`.
     pub kernel: String,
 }
 
@@ -53,11 +54,13 @@ pub struct Schedule {
     pub shuffled_tiles: Option<u64>,
     /// Leap over blocks of cells in which nothing absorbs or emits.
     pub empty_space_skipping: bool,
+    /// The registers that kernels run with.
+    pub level: Level,
 }
 
 impl Default for Schedule {
     fn default() -> Self {
-        Schedule { shuffled_tiles: None, empty_space_skipping: true }
+        Schedule { shuffled_tiles: None, empty_space_skipping: true, level: Level::widest() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! One body over all levels: every lane does what one number does, to the bit.
 
-use super::{Ints, Kernel, Lanes, Level, Mask, Pairs, Table};
+use super::{BATCH, Ints, Kernel, Lanes, Level, Mask, Pairs, Table};
 
 /// Numbers of all magnitudes, signs and roundings, the same on each call.
 fn numbers(count: usize, seed: u32) -> Vec<f32> {
@@ -25,7 +25,8 @@ impl Kernel for Everything {
         let samples: Vec<i16> = numbers(999, 3).iter().map(|x| (x * 100.0) as i16).collect();
         let tables = [9, 31, 50].map(|n| Table::new(&numbers(n, 4)));
         let places: Vec<i32> = a.iter().map(|x| (x.abs() * 7.0) as i32).collect();
-        let mut out = vec![Vec::new(); 32];
+        let sixteen: [f32; BATCH] = std::array::from_fn(|i| b[i]);
+        let mut out = vec![Vec::new(); 42];
         for at in (0..4096).step_by(L::LANES) {
             let (x, y) = (L::load(&a[at..]), L::load(&b[at..]));
             let places = L::Ints::load(&places[at..]);
@@ -57,14 +58,24 @@ impl Kernel for Everything {
                 L::select(<L::Mask as Mask>::ALL.and_not(less), x, y),
                 L::select(places.eq(L::Ints::splat(7)), x, y),
                 L::select(places.lt(whole), x, y),
+                L::from_ints(places * whole - places.min(whole).shifted_right(2)),
+                L::from_ints(whole.and(L::Ints::splat(0xff0f)) + places.max(whole)),
+                L::pick16(&sixteen, places),
             ];
             let [first, second] = i16::pairs::<L>(&samples, places);
             let [third, fourth] = f32::pairs::<L>(&b, places);
             let mut lanes = vec![0.0; L::LANES];
-            for (k, v) in found.into_iter().chain([first, second, third, fourth]).enumerate() {
+            let pairs = [first, second, third, fourth];
+            let quads = [i16::quads::<L>(&samples, places), f32::quads::<L>(&b, places)].concat();
+            for (k, v) in found.into_iter().chain(pairs).chain(quads).enumerate() {
                 v.store(&mut lanes);
                 out[k].extend(lanes.iter().map(|v| v.to_bits()));
             }
+        }
+        for batch in a.as_chunks::<BATCH>().0 {
+            let (before, all) = L::accumulated(&batch.map(|x| x.abs().absorbed()));
+            out[40].extend(before.map(f32::to_bits));
+            out[41].extend([(all + L::sum(batch)).to_bits(); BATCH]);
         }
         out.concat()
     }
@@ -132,4 +143,16 @@ fn levels_are_known_by_name() {
     }
     assert!("sse".parse::<Level>().unwrap_err().contains("avx2"), "a wrong name lists the right ones");
     assert!(Level::widest().is_available() && Level::Scalar.is_available());
+}
+
+#[test]
+fn accumulated_opacity_is_accurate_however_small() {
+    for opacity in [1e-30f32, 1e-8, 1e-3, 0.25, 1.0] {
+        let (before, all) = f32::accumulated(&[opacity; BATCH]);
+        for (k, &found) in before.iter().chain([&all]).enumerate().skip(1) {
+            let expected = -(k as f64 * (-f64::from(opacity)).ln_1p()).exp_m1();
+            let apart = (f64::from(found) / expected - 1.0).abs();
+            assert!(apart < 1e-6, "{k} of opacity {opacity:e}: {found:e}, expected {expected:e}");
+        }
+    }
 }
