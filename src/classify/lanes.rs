@@ -69,12 +69,11 @@ impl Knots {
     /// Numbers moved into the domain, the intervals that they are in, and their distances from the lower knots.
     #[inline(always)]
     fn locate<L: Lanes, const FEW: bool>(&self, x: L) -> (L::Ints, L) {
-        let [first, last] = self.ends.map(|end| L::from_f64(f64::from(end)));
-        let x = x.max(first).min(last);
+        let x = x.max(L::splat(self.ends[0])).min(L::splat(self.ends[1]));
         let mut at = L::Ints::splat(0);
         if FEW {
             for &knot in &self.inner {
-                let beyond = L::from_f64(f64::from(knot)).le(x);
+                let beyond = L::splat(knot).le(x);
                 at = L::Ints::select(beyond, at + L::Ints::splat(1), at);
             }
         } else {
@@ -117,7 +116,11 @@ impl OneDColumns {
         if !L::ZERO.lt(self.lit.pick::<L, FEW>(at)).any() {
             return None;
         }
-        Some(each(|c| self.slope[c].pick::<L, FEW>(at).mul_plus(dx, self.low[c].pick::<L, FEW>(at))))
+        let mut optics = [L::ZERO; 4];
+        for c in 0..4 {
+            optics[c] = self.slope[c].pick::<L, FEW>(at).mul_plus(dx, self.low[c].pick::<L, FEW>(at));
+        }
+        Some(optics)
     }
 }
 
@@ -166,11 +169,15 @@ impl TwoDColumns {
         }
         let (j, dg) = self.gradients.locate::<L, FEW>(gradients_per_mm());
         let at = i + j * L::Ints::splat(self.values.inner.len() as i32 + 1);
-        Some(each(|c| {
-            let pick = |columns: &[Column; 4]| columns[c].pick::<L, false>(at);
-            let across = pick(&self.by_value).mul_plus(dv, pick(&self.low));
-            pick(&self.by_both).mul_plus(dv, pick(&self.by_gradient)).mul_plus(dg, across)
-        }))
+        let mut optics = [L::ZERO; 4];
+        for c in 0..4 {
+            let (low, by_value) = (self.low[c].pick::<L, false>(at), self.by_value[c].pick::<L, false>(at));
+            let (by_gradient, by_both) =
+                (self.by_gradient[c].pick::<L, false>(at), self.by_both[c].pick::<L, false>(at));
+            let across = by_value.mul_plus(dv, low);
+            optics[c] = by_both.mul_plus(dv, by_gradient).mul_plus(dg, across);
+        }
+        Some(optics)
     }
 }
 

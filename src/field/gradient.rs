@@ -103,11 +103,12 @@ impl GradientUnits {
     /// HU/mm along the axes of the patient (LPS).
     #[inline(always)]
     pub fn per_mm<N: Number>(&self, [x, y, z]: [N; 3]) -> [N; 3] {
-        let constant = |x: f32| N::from_f64(f64::from(x));
-        each(|row| {
-            let [a, b, c] = self.rows[row];
-            constant(a) * x + constant(b) * y + constant(c) * z
-        })
+        let mut along = [N::ZERO; 3];
+        for (along, row) in along.iter_mut().zip(&self.rows) {
+            let (a, b, c) = (f64::from(row[0]), f64::from(row[1]), f64::from(row[2]));
+            *along = N::from_f64(a) * x + N::from_f64(b) * y + N::from_f64(c) * z;
+        }
+        along
     }
 }
 

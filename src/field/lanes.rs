@@ -2,7 +2,7 @@
 //! [`Trilinear::gradient_per_index`] are of one.
 
 use super::{Batch, Trilinear, Voxel};
-use crate::math::{Number, each};
+use crate::math::Number;
 use crate::simd::{Ints, Lanes, Pairs};
 
 /// The cells of some samples of a batch, on even slices.
@@ -39,79 +39,86 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
     /// The cells of the samples from number `at` on.
     #[inline(always)]
     pub(crate) fn cells<L: Lanes>(&self, batch: &Batch<'_>, at: usize) -> Cells<L> {
-        let (corner, fraction) = batch.first.corner_and_fraction();
-        let moved: [L::Ints; 3] = each(|a| L::Ints::load(&batch.offsets[a][at..]) + L::Ints::splat(fraction[a]));
-        let steps: [L::Ints; 3] = each(|a| moved[a].shifted_right(24));
-        let [_, down, back] = self.strides;
-        let first = corner[0] + corner[1] * down as i64 + corner[2] * back as i64;
-        let inner = steps[0] + steps[1] * L::Ints::splat(down as i32) + steps[2] * L::Ints::splat(back as i32);
+        let (first, units) = batch.first.corner_and_fraction();
         let mask = L::Ints::splat((1 << 24) - 1);
         let unit = L::from_f64(1.0 / f64::from(1 << 24));
-        Cells {
-            base: L::Ints::splat(first as i32) + inner,
-            corner: each(|a| L::Ints::splat(corner[a] as i32) + steps[a]),
-            fraction: each(|a| L::from_ints(moved[a].and(mask)) * unit),
+        let mut base = L::Ints::splat(0);
+        let (mut corner, mut fraction) = ([base; 3], [L::ZERO; 3]);
+        for a in 0..3 {
+            let moved = L::Ints::load(&batch.offsets[a][at..]) + L::Ints::splat(units[a]);
+            corner[a] = L::Ints::splat(first[a] as i32) + moved.shifted_right(24);
+            fraction[a] = L::from_ints(moved.and(mask)) * unit;
+            base = base + corner[a] * L::Ints::splat(self.strides[a] as i32);
         }
+        Cells { base, corner, fraction }
+    }
+
+    /// Distances in memory, of all lanes, to the next lines along j, along k, and along both.
+    #[inline(always)]
+    fn next_lines<L: Lanes>(&self) -> [L::Ints; 3] {
+        let (down, back) = (L::Ints::splat(self.strides[1] as i32), L::Ints::splat(self.strides[2] as i32));
+        [down, back, down + back]
     }
 
     /// The interpolated stored samples.
     #[inline(always)]
     pub(crate) fn values<L: Lanes>(&self, cells: &Cells<L>) -> L {
-        let [_, down, back] = self.strides.map(|stride| L::Ints::splat(stride as i32));
-        let pairs = [cells.base, cells.base + down, cells.base + back, cells.base + down + back]
-            .map(|at| V::pairs::<L>(self.voxels, at));
-        trilinear(pairs, cells.fraction)
+        let [down, back, both] = self.next_lines::<L>();
+        let a = V::pairs::<L>(self.voxels, cells.base);
+        let b = V::pairs::<L>(self.voxels, cells.base + down);
+        let c = V::pairs::<L>(self.voxels, cells.base + back);
+        let d = V::pairs::<L>(self.voxels, cells.base + both);
+        trilinear([a, b, c, d], cells.fraction)
     }
 
     /// The lines through the cells, none of which is at the border.
     #[inline(always)]
     pub(crate) fn lines<L: Lanes>(&self, cells: &Cells<L>) -> Lines<L> {
-        let [_, down, back] = self.strides.map(|stride| L::Ints::splat(stride as i32));
+        let [down, back, both] = self.next_lines::<L>();
         let first = cells.base - L::Ints::splat(1);
-        [first, first + down, first + back, first + down + back].map(|at| V::quads::<L>(self.voxels, at))
+        let (a, b) = (V::quads::<L>(self.voxels, first), V::quads::<L>(self.voxels, first + down));
+        let (c, d) = (V::quads::<L>(self.voxels, first + back), V::quads::<L>(self.voxels, first + both));
+        [a, b, c, d]
     }
 
-    /// The lines through cells that may be at the border.
+    /// A line through cells that may be at the border, this far in memory from their lower corners.
     #[inline(always)]
-    fn lines_at_border<L: Lanes>(&self, cells: &Cells<L>) -> Lines<L> {
-        let [_, down, back] = self.strides.map(|stride| L::Ints::splat(stride as i32));
-        let last = L::Ints::splat(self.dims[0] as i32 - 2);
-        let before = cells.corner[0].max(L::Ints::splat(1)) - L::Ints::splat(1) - cells.corner[0];
-        let after = (cells.corner[0] + L::Ints::splat(1)).min(last) - cells.corner[0];
-        [cells.base, cells.base + down, cells.base + back, cells.base + down + back].map(|at| {
-            let [first, _] = V::pairs::<L>(self.voxels, at + before);
-            let [second, third] = V::pairs::<L>(self.voxels, at);
-            let [_, fourth] = V::pairs::<L>(self.voxels, at + after);
-            [first, second, third, fourth]
-        })
+    fn line_at_border<L: Lanes>(&self, cells: &Cells<L>, away: L::Ints) -> [L; 4] {
+        let (one, last) = (L::Ints::splat(1), L::Ints::splat(self.dims[0] as i32 - 2));
+        let (at, i) = (cells.base + away, cells.corner[0]);
+        let [first, _] = V::pairs::<L>(self.voxels, at - i + (i.max(one) - one));
+        let [second, third] = V::pairs::<L>(self.voxels, at);
+        let [_, fourth] = V::pairs::<L>(self.voxels, at - i + (i + one).min(last));
+        [first, second, third, fourth]
     }
 
     /// The gradients, given the lines through the cells, none of which is at the border.
     #[inline(always)]
     pub(crate) fn gradients<L: Lanes>(&self, cells: &Cells<L>, lines: &Lines<L>) -> [L; 3] {
-        let [_, down, back] = self.strides.map(|stride| L::Ints::splat(stride as i32));
-        let double = |stride: L::Ints| stride + stride;
+        let [down, back, _] = self.next_lines::<L>();
         let none = L::Ints::splat(0);
-        self.gradients_by(cells, lines, [[none - down, double(down)], [none - back, double(back)]], [[L::ONE; 2]; 3])
+        let beyond = [[none - down, down + down], [none - back, back + back]];
+        self.gradients_by(cells, lines, beyond, [[L::ONE; 2]; 3])
     }
 
     /// The gradients of cells that may be at the border.
     #[inline(always)]
     pub(crate) fn gradients_at_border<L: Lanes>(&self, cells: &Cells<L>) -> [L; 3] {
-        // One step to the neighbours, or none where there is none; differences over one step count twice.
-        let ends = |axis: usize| {
-            let (corner, end) = (cells.corner[axis], L::Ints::splat(self.dims[axis] as i32 - 2));
-            [corner.lt(L::Ints::splat(1)), (end - L::Ints::splat(1)).lt(corner)]
-        };
-        let stride = |axis: usize| L::Ints::splat(self.strides[axis] as i32);
-        let none = L::Ints::splat(0);
-        let beyond = |axis: usize| {
-            let ([first, last], stride) = (ends(axis), stride(axis));
-            [L::Ints::select(first, none, none - stride), L::Ints::select(last, stride, stride + stride)]
-        };
-        let twice = |axis: usize| ends(axis).map(|end| L::select(end, L::ONE + L::ONE, L::ONE));
-        let lines = self.lines_at_border(cells);
-        self.gradients_by(cells, &lines, [beyond(1), beyond(2)], [twice(0), twice(1), twice(2)])
+        let (none, one, two) = (L::Ints::splat(0), L::Ints::splat(1), L::ONE + L::ONE);
+        let (mut beyond, mut times) = ([[none; 2]; 3], [[L::ONE; 2]; 3]);
+        for a in 0..3 {
+            // One step to the neighbours, or none where there is none; differences over one step count twice.
+            let stride = L::Ints::splat(self.strides[a] as i32);
+            let is_first = cells.corner[a].lt(one);
+            let is_last = L::Ints::splat(self.dims[a] as i32 - 3).lt(cells.corner[a]);
+            beyond[a] =
+                [L::Ints::select(is_first, none, none - stride), L::Ints::select(is_last, stride, stride + stride)];
+            times[a] = [L::select(is_first, two, L::ONE), L::select(is_last, two, L::ONE)];
+        }
+        let [down, back, both] = self.next_lines::<L>();
+        let (a, b) = (self.line_at_border(cells, none), self.line_at_border(cells, down));
+        let (c, d) = (self.line_at_border(cells, back), self.line_at_border(cells, both));
+        self.gradients_by(cells, &[a, b, c, d], [beyond[1], beyond[2]], times)
     }
 
     /// The gradients by differences of the corners' neighbours, in the order of operations of the scalar definition: `beyond` are
@@ -125,49 +132,70 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
         [[above, below], [front, behind]]: [[L::Ints; 2]; 2],
         times: [[L; 2]; 3],
     ) -> [L; 3] {
-        let [_, down, back] = self.strides.map(|stride| L::Ints::splat(stride as i32));
-        let [u, v, w] = cells.fraction;
-        let pair = |at: L::Ints| V::pairs::<L>(self.voxels, cells.base + at);
-        let middle = |line: &[L; 4]| [line[1], line[2]];
-        let bilinear = |p: [L; 4]| lerp(lerp(p[0], p[1], v), lerp(p[2], p[3], v), w);
-        let half = |low: L, high: L| L::from_f64(0.5) * lerp(low, high, u);
+        let [down, back, _] = self.next_lines::<L>();
+        let at = cells.fraction;
+        let base = cells.base;
         let [near, far] = times[0];
         let along_i = half(
-            bilinear([a, b, c, d].map(|line| (line[2] - line[0]) * near)),
-            bilinear([a, b, c, d].map(|line| (line[3] - line[1]) * far)),
+            bilinear([(a[2] - a[0]) * near, (b[2] - b[0]) * near, (c[2] - c[0]) * near, (d[2] - d[0]) * near], at),
+            bilinear([(a[3] - a[1]) * far, (b[3] - b[1]) * far, (c[3] - c[1]) * far, (d[3] - d[1]) * far], at),
+            at,
         );
-        let [a, b, c, d] = [middle(a), middle(b), middle(c), middle(d)];
-        let across = |low: [[L; 2]; 4], high: [[L; 2]; 4], times: [L; 4]| {
-            let at = |x: usize| bilinear(each(|n| (high[n][x] - low[n][x]) * times[n]));
-            half(at(0), at(1))
-        };
-        let [near, far] = times[1];
-        let along_j = across(
-            [pair(above), a, pair(above + back), c],
-            [b, pair(below), d, pair(below + back)],
-            [near, far, near, far],
-        );
+        let [a, b, c, d] = [[a[1], a[2]], [b[1], b[2]], [c[1], c[2]], [d[1], d[2]]];
+        let (above_a, above_c) =
+            (V::pairs::<L>(self.voxels, base + above), V::pairs::<L>(self.voxels, base + above + back));
+        let (below_b, below_d) =
+            (V::pairs::<L>(self.voxels, base + below), V::pairs::<L>(self.voxels, base + below + back));
+        let along_j = across([above_a, a, above_c, c], [b, below_b, d, below_d], [times[1], times[1]], at);
+        let (front_a, front_b) =
+            (V::pairs::<L>(self.voxels, base + front), V::pairs::<L>(self.voxels, base + front + down));
+        let (behind_c, behind_d) =
+            (V::pairs::<L>(self.voxels, base + behind), V::pairs::<L>(self.voxels, base + behind + down));
         let [near, far] = times[2];
-        let along_k = across(
-            [pair(front), pair(front + down), a, b],
-            [c, d, pair(behind), pair(behind + down)],
-            [near, near, far, far],
-        );
+        let along_k = across([front_a, front_b, a, b], [c, d, behind_c, behind_d], [[near; 2], [far; 2]], at);
         [along_i, along_j, along_k]
     }
+}
+
+/// Between the lines of a cell.
+#[inline(always)]
+fn bilinear<L: Lanes>([a, b, c, d]: [L; 4], [_, v, w]: [L; 3]) -> L {
+    lerp(lerp(a, b, v), lerp(c, d, v), w)
+}
+
+/// Half of what lies between the ends of a cell's lines.
+#[inline(always)]
+fn half<L: Lanes>(low: L, high: L, [u, _, _]: [L; 3]) -> L {
+    L::from_f64(0.5) * lerp(low, high, u)
+}
+
+/// Half the differences across the lines of a cell, `times` their factors line by line, interpolated.
+#[inline(always)]
+fn across<L: Lanes>(low: [[L; 2]; 4], high: [[L; 2]; 4], times: [[L; 2]; 2], at: [L; 3]) -> L {
+    let mut ends = [L::ZERO; 2];
+    for (x, end) in ends.iter_mut().enumerate() {
+        let mut differences = [L::ZERO; 4];
+        for n in 0..4 {
+            differences[n] = (high[n][x] - low[n][x]) * times[n / 2][n % 2];
+        }
+        *end = bilinear(differences, at);
+    }
+    half(ends[0], ends[1], at)
 }
 
 /// The interpolated stored samples of the lines through the cells.
 #[inline(always)]
 pub(crate) fn values_of<L: Lanes>(cells: &Cells<L>, lines: &Lines<L>) -> L {
-    trilinear(lines.map(|line| [line[1], line[2]]), cells.fraction)
+    let [a, b, c, d] = lines;
+    trilinear([[a[1], a[2]], [b[1], b[2]], [c[1], c[2]], [d[1], d[2]]], cells.fraction)
 }
 
 /// [`interpolate`](super::interpolate) between pairs along i.
 #[inline(always)]
-fn trilinear<L: Number>(pairs: [[L; 2]; 4], [u, v, w]: [L; 3]) -> L {
-    let [a, b, c, d] = pairs.map(|[low, high]| lerp(low, high, u));
-    lerp(lerp(a, b, v), lerp(c, d, v), w)
+fn trilinear<L: Number>([a, b, c, d]: [[L; 2]; 4], [u, v, w]: [L; 3]) -> L {
+    let (lower, upper) =
+        (lerp(lerp(a[0], a[1], u), lerp(b[0], b[1], u), v), lerp(lerp(c[0], c[1], u), lerp(d[0], d[1], u), v));
+    lerp(lower, upper, w)
 }
 
 #[inline(always)]

@@ -147,23 +147,21 @@ impl<'a> Lit<'a> {
     /// [`Lit::factors`] of many gradients, operation by operation.
     #[inline(always)]
     fn factors_of<L: Lanes>(&self, aim: &[Beam], gradient_per_mm: [L; 3]) -> ([L; 3], [L; 3]) {
-        let constant = |x: f32| L::from_f64(f64::from(x));
-        let cosine = |towards: [f32; 3]| dot(gradient_per_mm, towards.map(constant));
-        let (mut reflected, mut highlight) = ([constant(self.ambient); 3], [L::ZERO; 3]);
+        let (mut reflected, mut highlight) = ([L::splat(self.ambient); 3], [L::ZERO; 3]);
         let square = dot(gradient_per_mm, gradient_per_mm);
         let is_there = L::ZERO.lt(square);
-        let fade = square / (square + constant(self.soft_square));
+        let fade = square / (square + L::splat(self.soft_square));
         let toward_normal = -L::ONE / square.sqrt();
         for beam in aim {
-            let lit = self.facings(cosine(beam.towards) * toward_normal);
-            let shine = self.facings(cosine(beam.half) * toward_normal);
+            let lit = self.facings(dot(gradient_per_mm, splats(beam.towards)) * toward_normal);
+            let shine = self.facings(dot(gradient_per_mm, splats(beam.half)) * toward_normal);
             let gloss = L::select(L::ZERO.lt(lit), self.glosses(shine), L::ZERO);
             // Where there is no gradient these are no numbers.
             let lit = L::select(is_there, fade * lit, L::ZERO);
             let gloss = L::select(is_there, fade * gloss, L::ZERO);
             for c in 0..3 {
-                reflected[c] += constant(beam.diffuse[c]) * lit;
-                highlight[c] += constant(beam.specular[c]) * gloss;
+                reflected[c] += L::splat(beam.diffuse[c]) * lit;
+                highlight[c] += L::splat(beam.specular[c]) * gloss;
             }
         }
         (reflected, highlight)
@@ -244,9 +242,18 @@ impl LaneShader for Lit<'_> {
         gradient_per_mm: [L; 3],
     ) -> Rgbs<L> {
         let (reflected, highlight) = self.factors_of(aim, gradient_per_mm);
-        let shaded = |q: L, c: usize| q * reflected[c] + extinction * highlight[c];
-        [shaded(r, 0), shaded(g, 1), shaded(b, 2), extinction]
+        [
+            r * reflected[0] + extinction * highlight[0],
+            g * reflected[1] + extinction * highlight[1],
+            b * reflected[2] + extinction * highlight[2],
+            extinction,
+        ]
     }
+}
+
+#[inline(always)]
+fn splats<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
+    [L::splat(x), L::splat(y), L::splat(z)]
 }
 
 #[inline(always)]

@@ -178,18 +178,27 @@ impl Lanes for F32x8 {
             // Four neighbours in one read of 64 bits, for half of the lanes at a time.
             let low = _mm256_i32gather_epi64::<2>(from, _mm256_castsi256_si128(at));
             let high = _mm256_i32gather_epi64::<2>(from, _mm256_extracti128_si256::<1>(at));
-            // The first pairs of lanes 0 1 4 5 2 3 6 7, then put in order; the second pairs likewise.
-            let [low, high] = [low, high].map(|x| _mm256_castsi256_ps(x));
-            let of = |x: __m256| halves(_mm256_permute4x64_epi64::<0b11_01_10_00>(_mm256_castps_si256(x)));
-            let [first, second] = of(_mm256_shuffle_ps::<0b10_00_10_00>(low, high));
-            let [third, fourth] = of(_mm256_shuffle_ps::<0b11_01_11_01>(low, high));
+            let (low, high) = (_mm256_castsi256_ps(low), _mm256_castsi256_ps(high));
+            // The pairs of lanes 0 1 4 5 2 3 6 7, then put in order.
+            let first = _mm256_castps_pd(_mm256_shuffle_ps::<0b10_00_10_00>(low, high));
+            let second = _mm256_castps_pd(_mm256_shuffle_ps::<0b11_01_11_01>(low, high));
+            let [first, second, third, fourth] = {
+                let first = _mm256_castpd_si256(_mm256_permute4x64_pd::<0b11_01_10_00>(first));
+                let second = _mm256_castpd_si256(_mm256_permute4x64_pd::<0b11_01_10_00>(second));
+                let ([a, b], [c, d]) = (halves(first), halves(second));
+                [a, b, c, d]
+            };
             [first, second, third, fourth]
         }
     }
     #[inline(always)]
     fn quads_f32(samples: &[f32], at: I32x8) -> [Self; 4] {
         let at = clamped(at, last_quad(samples));
-        [0, 1, 2, 3].map(|k| F32x8(unsafe { _mm256_i32gather_ps::<4>(samples[k..].as_ptr(), at) }))
+        let mut quads = [F32x8::ZERO; 4];
+        for (k, quad) in quads.iter_mut().enumerate() {
+            *quad = F32x8(unsafe { _mm256_i32gather_ps::<4>(samples[k..].as_ptr(), at) });
+        }
+        quads
     }
     #[inline(always)]
     fn compress(self, mask: Mask8) -> Self {
@@ -273,7 +282,7 @@ impl Ints for I32x8 {
     }
     #[inline(always)]
     fn select(mask: Mask8, yes: Self, no: Self) -> Self {
-        let [no, yes] = [no, yes].map(|x| unsafe { _mm256_castsi256_ps(x.0) });
+        let (no, yes) = unsafe { (_mm256_castsi256_ps(no.0), _mm256_castsi256_ps(yes.0)) };
         I32x8(unsafe { _mm256_castps_si256(_mm256_blendv_ps(no, yes, mask.0)) })
     }
     #[inline(always)]

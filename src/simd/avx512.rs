@@ -47,6 +47,16 @@ arithmetic!(
     _mm512_set1_ps
 );
 
+/// In lane k what lane k - distance has, and 0 where there is none.
+#[inline(always)]
+fn moved(all: __m512, distance: i32) -> __m512 {
+    // SAFETY: as below.
+    unsafe {
+        let from = _mm512_sub_epi32(I32x16::count().0, _mm512_set1_epi32(distance));
+        _mm512_maskz_permutexvar_ps(u16::MAX << distance, from, all)
+    }
+}
+
 /// The lower and the upper 16 bits of each lane, signed.
 #[inline(always)]
 fn halves(both: __m512i) -> [F32x16; 2] {
@@ -160,18 +170,16 @@ impl Lanes for F32x16 {
     fn quads_f32(samples: &[f32], at: I32x16) -> [Self; 4] {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_quad(samples) as i32));
-            [0, 1, 2, 3].map(|k| F32x16(_mm512_i32gather_ps::<4>(at, samples[k..].as_ptr())))
+            let mut quads = [F32x16::ZERO; 4];
+            for (k, quad) in quads.iter_mut().enumerate() {
+                *quad = F32x16(_mm512_i32gather_ps::<4>(at, samples[k..].as_ptr()));
+            }
+            quads
         }
     }
     #[inline(always)]
     fn accumulated(opacities: &[f32; BATCH]) -> ([f32; BATCH], f32) {
         unsafe {
-            let lane = I32x16::count().0;
-            // Lane k is given what lane k - distance has, and 0 where there is none.
-            let moved = |all: __m512, distance: i32| {
-                let from = _mm512_sub_epi32(lane, _mm512_set1_epi32(distance));
-                _mm512_maskz_permutexvar_ps(u16::MAX << distance, from, all)
-            };
             let mut all = _mm512_loadu_ps(opacities.as_ptr());
             for distance in [1, 2, 4, 8] {
                 let left = _mm512_sub_ps(_mm512_set1_ps(1.0), all);

@@ -14,6 +14,11 @@ pub(crate) trait Lanes: Number {
     /// As many truths.
     type Mask: Mask;
 
+    /// The same number in every lane.
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self::from_f64(f64::from(x))
+    }
     /// The first numbers of a slice, which has at least as many.
     fn load(from: &[f32]) -> Self;
     /// Overwrites the first numbers of a slice, which has at least as many.

@@ -152,7 +152,9 @@ fn fold_batch<L: Lanes, R: Rule, D: Direction, K: Coloring, E: Measure>(
             K::contribution(L::load(&channel[at..]), own, share).store(&mut channel[at..]);
         }
     }
-    D::composite(light, each(|c| f64::from(L::sum(&added[c]))), f64::from(opacity));
+    let [red, green, blue] = &added;
+    let added = [f64::from(L::sum(red)), f64::from(L::sum(green)), f64::from(L::sum(blue))];
+    D::composite(light, added, f64::from(opacity));
 }
 
 /// What stands for an interval.

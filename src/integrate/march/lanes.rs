@@ -7,7 +7,6 @@ use super::medium::Medium;
 use crate::classify::LaneClassifier;
 use crate::field::{Batch, Cells, GradientUnits, Trilinear, Voxel, values_of};
 use crate::integrate::shade::LaneShader;
-use crate::math::each;
 use crate::simd::{Lanes, Pairs};
 
 /// What [`Classified`](super::Classified) is, to the bit, on even slices and with one transfer function everywhere.
@@ -68,9 +67,11 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> ByLanes<'_, V, C, S> {
         gradients_per_index: impl FnOnce() -> [L; 3],
     ) -> Option<[L; 4]> {
         let magnitude = || self.magnitude.as_ref().map_or(L::ZERO, |magnitude| magnitude.values(cells));
-        let optics = self.classifier.classify_lanes(values, magnitude)?;
-        // Rounding may leave a trace below 0 at the foot of a ramp.
-        let optics = each(|c| optics[c].max(L::ZERO));
+        let mut optics = self.classifier.classify_lanes(values, magnitude)?;
+        for component in &mut optics {
+            // Rounding may leave a trace below 0 at the foot of a ramp.
+            *component = component.max(L::ZERO);
+        }
         Some(if S::SHADES {
             self.shader.shade_lanes(aim, optics, self.units.per_mm(gradients_per_index()))
         } else {
