@@ -23,6 +23,7 @@ type Lines<L> = [[L; 4]; 4];
 /// The memory of which samples are read fits indices of 32 bits, and each line has a pair.
 const MOST_SAMPLES: usize = i32::MAX as usize;
 
+#[expect(private_bounds, reason = "for use in the crate")]
 impl<V: Voxel + Pairs> Trilinear<'_, V> {
     /// Whether samples can be read by lanes.
     pub(crate) fn suits_lanes(&self) -> bool {

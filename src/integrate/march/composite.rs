@@ -18,6 +18,9 @@ use crate::simd::Lanes;
 /// Emission in red, green and blue, and extinction of the samples of a batch, in the order they are visited; 0 behind the last.
 pub(super) type Run = [[f32; SAMPLES]; 4];
 
+/// Below this transmittance the largest f32 adds nothing to a pixel.
+const NOTHING_LEFT: f64 = f32::MIN_POSITIVE as f64 * f32::MIN_POSITIVE as f64 * f32::EPSILON as f64;
+
 /// Nothing.
 pub(super) const EMPTY: Run = [[0.0; SAMPLES]; 4];
 
@@ -40,7 +43,7 @@ impl Light {
     /// Before the first sample.
     pub(super) fn new(settings: &March) -> Self {
         let stop_below = match settings.order {
-            Order::FrontToBack => settings.termination_transmittance,
+            Order::FrontToBack => settings.termination_transmittance.max(NOTHING_LEFT),
             Order::BackToFront => 0.0,
         };
         let stretch = match settings.order {
