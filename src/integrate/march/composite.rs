@@ -77,6 +77,12 @@ impl Light {
         self.previous.is_some_and(|before| before != [0.0; 4])
     }
 
+    /// Passes a sample that is nothing, behind one that was nothing too.
+    #[inline(always)]
+    pub(super) fn rest(&mut self) {
+        self.previous = Some([0.0; 4]);
+    }
+
     /// True when a ray need not go on.
     #[inline(always)]
     pub(super) fn is_spent(&self) -> bool {

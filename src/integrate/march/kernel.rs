@@ -86,6 +86,7 @@ impl<M: Medium> Kernel<'_, M> {
     fn leap(&self, walk: &mut Walk, line: &Line<'_>, visited: usize, samples: usize) {
         let haze = self.medium.haze();
         if haze.is_none() && !walk.light.lingers() {
+            walk.light.rest();
             return;
         }
         // The first one closes the interval before it, and the others are crossed in closed form.
@@ -124,7 +125,7 @@ impl<M: Medium> Kernel<'_, M> {
         match self.medium.run::<L>(aim, &batch, |k| line.distance_mm(visited + k)) {
             Some(run) => walk.composite::<L>(&run, &delta_mm, samples),
             None if walk.light.lingers() => walk.composite::<L>(&EMPTY, &delta_mm, samples),
-            None => (),
+            None => walk.light.rest(),
         }
     }
 }
