@@ -6,6 +6,7 @@
 //! rescale a sample.
 
 mod axis;
+mod lanes;
 mod one_d;
 mod table;
 mod texture;
@@ -16,6 +17,8 @@ pub use one_d::{Linear, OneD};
 pub use table::Tabulated;
 pub use texture::{StepOpacity, Texture};
 pub use two_d::{Bilinear, TwoD};
+
+pub(crate) use lanes::{LaneClassifier, OneDColumns, TwoDColumns};
 
 use crate::math::Real;
 use crate::transfer::{Optics, TransferFunction};

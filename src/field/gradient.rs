@@ -1,8 +1,11 @@
 //! The gradient: central differences at the voxels, interpolated trilinearly.
 
+use std::ops::{Add, Mul, Sub};
+
 use glam::{Vec4, Vec4Swizzles};
 
-use super::{Cell, Even, Spacing, Trilinear, Voxel, interpolate};
+use super::{Cell, Even, Spacing, Trilinear, Voxel};
+use crate::math::{Number, each};
 use crate::volume::{Grid, Rescale};
 
 impl<V: Voxel, K: Spacing> Trilinear<'_, V, K> {
@@ -48,14 +51,18 @@ impl<V: Voxel, K: Spacing> Trilinear<'_, V, K> {
         Vec4::new(line[0].to_f32(), line[1].to_f32(), line[2].to_f32(), line[3].to_f32())
     }
 
+    /// In the order of operations of [`Trilinear::gradient_inside`].
     #[cold]
     fn gradient_at_border(&self, cell: &Cell) -> [f32; 3] {
-        std::array::from_fn(|axis| {
-            let differences = std::array::from_fn(|c| {
-                let corner: [usize; 3] = std::array::from_fn(|a| (cell.corner[a] + (c >> a & 1)).min(self.dims[a] - 1));
-                self.difference(corner, axis)
-            });
-            interpolate(differences, cell.fraction)
+        let [u, v, w] = cell.fraction;
+        each(|axis| {
+            // Twice the derivative, as the difference between both neighbours of an inner voxel is.
+            let twice = |c: usize| {
+                let corner: [usize; 3] = each(|a| (cell.corner[a] + (c >> a & 1)).min(self.dims[a] - 1));
+                2.0 * self.difference(corner, axis)
+            };
+            let bilinear = |x: usize| lerp(lerp(twice(x), twice(x + 2), v), lerp(twice(x + 4), twice(x + 6), v), w);
+            0.5 * lerp(bilinear(0), bilinear(1), u)
         })
     }
 
@@ -76,7 +83,7 @@ impl<V: Voxel, K: Spacing> Trilinear<'_, V, K> {
 }
 
 #[inline(always)]
-fn lerp(a: Vec4, b: Vec4, t: f32) -> Vec4 {
+fn lerp<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>>(a: T, b: T, t: f32) -> T {
     a + (b - a) * t
 }
 
@@ -95,9 +102,13 @@ impl GradientUnits {
 
     /// HU/mm along the axes of the patient (LPS).
     #[inline(always)]
-    pub fn per_mm(&self, per_index: [f32; 3]) -> [f32; 3] {
-        let [x, y, z] = per_index;
-        self.rows.map(|[a, b, c]| a * x + b * y + c * z)
+    pub fn per_mm<N: Number>(&self, [x, y, z]: [N; 3]) -> [N; 3] {
+        let mut along = [N::ZERO; 3];
+        for (along, row) in along.iter_mut().zip(&self.rows) {
+            let (a, b, c) = (f64::from(row[0]), f64::from(row[1]), f64::from(row[2]));
+            *along = N::from_f64(a) * x + N::from_f64(b) * y + N::from_f64(c) * z;
+        }
+        along
     }
 }
 

@@ -15,9 +15,11 @@
 //!   interpolated vector is another function: it dips where neighbouring gradients disagree.)
 //! * *Macrocells* ([`Macrocells`]): lowest and highest stored value of blocks of 8³ cells, and likewise of the magnitude.
 
+mod batch;
 mod chord;
 mod corners;
 mod gradient;
+mod lanes;
 mod macrocell;
 mod magnitude;
 mod position;
@@ -25,6 +27,7 @@ mod spacing;
 mod trilinear;
 mod voxel;
 
+pub use batch::{Batch, MOST_VOXELS_PER_STEP, Offsets, SAMPLES, offsets};
 pub use chord::Chord;
 pub use corners::Corners;
 pub use gradient::GradientUnits;
@@ -34,3 +37,5 @@ pub use position::{Cell, Pace, Position, Step};
 pub use spacing::{Even, SliceTable, Spacing, Uneven};
 pub use trilinear::{Trilinear, interpolate};
 pub use voxel::Voxel;
+
+pub(crate) use lanes::{Cells, values_of};

@@ -7,10 +7,15 @@
 use glam::DVec3;
 
 use crate::error::{Error, Fault, Result};
+use crate::math::each;
 
 const FRACTION_BITS: u32 = 40;
 /// Bits of the fraction that an f32 holds.
 const KEPT_BITS: u32 = 24;
+/// Bits of the fraction that it does not.
+const LOST_BITS: u32 = FRACTION_BITS - KEPT_BITS;
+/// The part of a voxel that is the last of the bits kept.
+const KEPT_UNIT: i64 = 1 << LOST_BITS;
 
 /// A continuous voxel index inside the domain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,10 +53,11 @@ impl Position {
 
     /// The position nearest to a continuous index, clamped to the cells of a lattice of `dims` voxels. The upper border
     /// belongs to the last cell, at a fraction one part in 2²⁴ short of 1; an axis of one voxel has one position, 0.
+    #[inline(always)]
     pub fn new(index: DVec3, dims: [usize; 3]) -> Self {
-        Position(std::array::from_fn(|a| {
+        Position(each(|a| {
             let end = (dims[a] as i64 - 1) << FRACTION_BITS;
-            ((index[a] * (1i64 << FRACTION_BITS) as f64) as i64).min(end - 1).max(0)
+            ((index[a] * (1i64 << FRACTION_BITS) as f64) as i64).min(end - KEPT_UNIT).max(0)
         }))
     }
 
@@ -67,15 +73,45 @@ impl Position {
     }
 
     /// The step that leads from here to `last` in `steps` equal parts, rounded towards 0 so that it never leads beyond.
+    #[inline(always)]
     pub fn step_to(self, last: Position, steps: usize) -> Step {
-        Step(std::array::from_fn(|a| (last.0[a] - self.0[a]) / steps.max(1) as i64))
+        Step(each(|a| (last.0[a] - self.0[a]) / steps.max(1) as i64))
     }
 
     /// The position `count` steps on.
     #[inline(always)]
     #[must_use]
     pub fn advanced(self, step: Step, count: usize) -> Self {
-        Position(std::array::from_fn(|a| self.0[a] + step.0[a] * count as i64))
+        Position(each(|a| self.0[a] + step.0[a] * count as i64))
+    }
+
+    /// The position with no more of its fraction than an f32 holds, rounded against the direction of a step: towards where a
+    /// ray comes from, which is inside.
+    #[inline(always)]
+    #[must_use]
+    pub fn rounded_against(self, step: Step) -> Self {
+        let add = |a: usize| if step.0[a] < 0 { KEPT_UNIT - 1 } else { 0 };
+        Position(each(|a| (self.0[a] + add(a)) & -KEPT_UNIT))
+    }
+
+    /// The position, which has no more of its fraction than an f32 holds, moved by `count` steps rounded likewise.
+    #[inline(always)]
+    #[must_use]
+    pub fn advanced_rounded(self, step: Step, count: usize) -> Self {
+        Position(each(|a| self.0[a] + ((step.0[a] * count as i64) / KEPT_UNIT) * KEPT_UNIT))
+    }
+
+    /// The voxel at the lower corner of the cell, and the fraction in units of 2⁻²⁴ voxels.
+    #[inline(always)]
+    pub(super) fn corner_and_fraction(self) -> ([i64; 3], [i32; 3]) {
+        let mask = (1i32 << KEPT_BITS) - 1;
+        (each(|a| self.0[a] >> FRACTION_BITS), each(|a| (self.0[a] >> LOST_BITS) as i32 & mask))
+    }
+
+    /// How far this position is from another, in units of 2⁻²⁴ voxels, both of which have no more of their fractions than that.
+    #[inline(always)]
+    pub(super) fn units_from(self, other: Position) -> [i32; 3] {
+        each(|a| ((self.0[a] - other.0[a]) >> LOST_BITS) as i32)
     }
 
     /// The position so many voxels further along an axis of a lattice of `dims` voxels, clamped as by [`Position::new`].
@@ -83,7 +119,7 @@ impl Position {
     #[must_use]
     pub fn beside(mut self, axis: usize, voxels: f64, dims: [usize; 3]) -> Self {
         let end = (dims[axis] as i64 - 1) << FRACTION_BITS;
-        self.0[axis] = (self.0[axis] + (voxels * (1i64 << FRACTION_BITS) as f64) as i64).min(end - 1).max(0);
+        self.0[axis] = (self.0[axis] + (voxels * (1i64 << FRACTION_BITS) as f64) as i64).min(end - KEPT_UNIT).max(0);
         self
     }
 
@@ -94,7 +130,7 @@ impl Position {
         let mask = (1i32 << KEPT_BITS) - 1;
         Cell {
             corner: self.0.map(|x| (x >> FRACTION_BITS) as usize),
-            fraction: self.0.map(|x| ((x >> (FRACTION_BITS - KEPT_BITS)) as i32 & mask) as f32 * per_unit),
+            fraction: self.0.map(|x| ((x >> LOST_BITS) as i32 & mask) as f32 * per_unit),
         }
     }
 
@@ -111,12 +147,21 @@ impl Position {
         let mut steps = f32::INFINITY;
         for a in 0..3 {
             let face = if pace.step.0[a] < 0 { lower[a] } else { upper[a] };
-            let distance = ((face << FRACTION_BITS) - self.0[a]).unsigned_abs();
+            // What rounding may add to later positions is taken off.
+            let distance = ((face << FRACTION_BITS) - self.0[a]).unsigned_abs().saturating_sub(2 * KEPT_UNIT as u64);
             steps = steps.min(distance as f32 * pace.steps_per_unit[a]);
         }
         // The n-th step is inside if n < distance / step; the product above exceeds that by less than 3e-7 of itself.
         // Through u32, which saturates where there is no step at all.
         (steps * (1.0 - 1e-6)) as u32 as usize + 1
+    }
+}
+
+impl Step {
+    /// So many steps, in units of 2⁻²⁴ voxels, rounded towards 0.
+    #[inline(always)]
+    pub(super) fn units(self, count: usize) -> [i32; 3] {
+        each(|a| ((self.0[a] * count as i64) / KEPT_UNIT) as i32)
     }
 }
 
@@ -130,8 +175,9 @@ pub struct Pace {
 
 impl Pace {
     /// The pace of a step; along an axis it does not move on, any distance takes for ever.
+    #[inline(always)]
     pub fn new(step: Step) -> Self {
-        Pace { step, steps_per_unit: step.0.map(|x| 1.0 / x.unsigned_abs() as f32) }
+        Pace { step, steps_per_unit: each(|a| 1.0 / step.0[a].unsigned_abs() as f32) }
     }
 }
 

@@ -44,7 +44,7 @@ pub struct Statistics {
     pub error_bound: Option<f64>,
     /// Rays that met the volume, or haze.
     pub rays: u64,
-    /// The kernel, such as `march/i16/tf2d/lit`.
+    /// The kernel, such as `march/i16/tf2d/lit/avx2`.
     pub kernel: String,
 }
 

@@ -61,8 +61,8 @@ impl Occupancy {
     pub(super) fn around<L: Lanes>(&self, [i, j, k]: [L::Ints; 3]) -> (L::Ints, L::Mask) {
         let [nx, ny, _] = self.blocks;
         let (row, slab) = (L::Ints::splat(nx as i32), L::Ints::splat((nx * ny) as i32));
-        let [i, j, k] = [i.shifted::<LOG2_BLOCK>(), j.shifted::<LOG2_BLOCK>(), k.shifted::<LOG2_BLOCK>()];
-        let known = L::Ints::bytes(&self.empty, i + j.times(row) + k.times(slab));
+        let [i, j, k] = [i.shifted_right(LOG2_BLOCK), j.shifted_right(LOG2_BLOCK), k.shifted_right(LOG2_BLOCK)];
+        let known = L::Ints::bytes(&self.empty, i + j * row + k * slab);
         let shows = known.eq(L::Ints::splat(0));
         (L::Ints::select(shows, L::Ints::splat(LOG2_BLOCK as i32), known), <L::Mask as Mask>::ALL.and_not(shows))
     }

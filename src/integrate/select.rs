@@ -3,18 +3,22 @@
 use super::atmosphere::Atmosphere;
 use super::classify_voxels::classify_voxels;
 use super::empty_space::EmptySpace;
-use super::march::{AtVoxels, ByPlace, Classified, Kernel, LevelChanges, Masked, VtkPhong};
-use super::shade::{Lit, Shader, Unlit};
+use super::march::{AtVoxels, ByLanes, ByPlace, Classified, Kernel, LevelChanges, Masked, Medium, OneByOne, VtkPhong};
+use super::shade::{LaneShader, Lit, Shader, Unlit};
 use super::texels::{Component, Rgba, Texels};
 use super::{Frame, KernelName, Rendered, Statistics};
-use crate::classify::{Baked, BakedAlike, StepOpacity, Tabulated, Texture, bake, bake_alike};
+use crate::classify::{
+    Baked, BakedAlike, LaneClassifier, OneDColumns, StepOpacity, Tabulated, Texture, TwoDColumns, bake, bake_alike,
+};
 use crate::error::Result;
 use crate::field::{
-    GradientUnits, Macrocells, SliceTable, Spacing, Trilinear, Voxel, gradient_magnitude_per_mm, gradient_range_per_mm,
+    GradientUnits, MOST_VOXELS_PER_STEP, Macrocells, SliceTable, Spacing, Trilinear, Voxel, gradient_magnitude_per_mm,
+    gradient_range_per_mm,
 };
-use crate::plan::{March, Reflection, Table};
+use crate::plan::{Lattice, March, Reflection, Table};
 use crate::scene::{ClassifyAt, Surface};
-use crate::volume::Samples;
+use crate::simd::{Level, Pairs};
+use crate::volume::{Grid, Samples};
 
 /// Renders by marching.
 pub(super) fn march(frame: &Frame<'_>, settings: &March) -> Result<Rendered> {
@@ -43,12 +47,25 @@ fn at_voxels<T: Texels<f32>>(frame: &Frame<'_>, settings: &March, texels: T, ker
     let medium = AtVoxels::new(texels, dims)?;
     let empty_space =
         frame.schedule.empty_space_skipping.then(|| EmptySpace::around(dims, |voxel| medium.is_lit(voxel)));
-    let (image, tally) = Kernel { medium: &medium, empty_space }.render(frame, settings);
-    let statistics = Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel };
-    Ok(Rendered { image, statistics })
+    Ok(walked(frame, settings, &OneByOne(&medium), empty_space, kernel))
 }
 
-fn by_classifier<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V]) -> Result<Rendered> {
+/// Marches through a medium.
+fn walked<M: Medium>(
+    frame: &Frame<'_>,
+    settings: &March,
+    medium: &M,
+    empty_space: Option<EmptySpace>,
+    name: String,
+) -> Rendered {
+    let level = if M::BY_LANES { frame.schedule.level } else { Level::Scalar };
+    let (image, tally) = Kernel { medium, empty_space, level }.render(frame, settings);
+    let kernel = format!("{name}/{level}");
+    let statistics = Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel };
+    Rendered { image, statistics }
+}
+
+fn by_classifier<V: Voxel + Pairs>(frame: &Frame<'_>, settings: &March, voxels: &[V]) -> Result<Rendered> {
     if let Some((mask, classes)) = frame.scene.effects.mask.as_ref().zip(frame.volume.classes()) {
         let functions = mask.functions(classes.count(), &frame.scene.transfer_function);
         let grid = frame.volume.grid();
@@ -61,9 +78,58 @@ fn by_classifier<V: Voxel>(frame: &Frame<'_>, settings: &March, voxels: &[V]) ->
         return by_table(frame, settings, voxels, table);
     }
     match bake(&frame.scene.transfer_function, frame.volume.rescale()) {
-        Baked::OneD(classifier) => by_shader(frame, settings, voxels, &classifier),
-        Baked::TwoD(classifier) => by_shader(frame, settings, voxels, &classifier),
+        Baked::OneD(classifier) => plain(frame, settings, voxels, &classifier, &OneDColumns::new(&classifier)),
+        Baked::TwoD(classifier) => plain(frame, settings, voxels, &classifier, &TwoDColumns::new(&classifier)),
     }
+}
+
+/// Renders one transfer function, many samples at a time where there is a kernel for that.
+fn plain<V: Voxel + Pairs, C: ByPlace, T: LaneClassifier>(
+    frame: &Frame<'_>,
+    settings: &March,
+    voxels: &[V],
+    classifier: &C,
+    columns: &T,
+) -> Result<Rendered> {
+    let (grid, scene) = (frame.volume.grid(), frame.scene);
+    let field = Trilinear::new(voxels, grid.dims())?;
+    let suits = field.suits_lanes() && steps_are_short(settings, grid) && frame.volume.slices().is_none();
+    if !suits || scene.effects.change_light() {
+        return by_shader(frame, settings, voxels, classifier);
+    }
+    match (&scene.shading, settings.reflection) {
+        (None, _) => by_lanes(frame, settings, field, classifier, columns, &Unlit),
+        (Some(shading), Reflection::BlinnPhong) => {
+            by_lanes(frame, settings, field, classifier, columns, &Lit::new(shading))
+        }
+        (Some(_), Reflection::VtkPhong) => by_shader(frame, settings, voxels, classifier),
+    }
+}
+
+/// Whether a batch of samples in any direction fits the offsets of lanes.
+fn steps_are_short(settings: &March, grid: &Grid) -> bool {
+    let rows = grid.lps_mm_to_index().matrix3.transpose();
+    // View planes are met at an angle, as far apart as it makes them.
+    settings.lattice == Lattice::PerRay
+        && [rows.x_axis, rows.y_axis, rows.z_axis]
+            .iter()
+            .all(|row| settings.step_mm * row.length() <= MOST_VOXELS_PER_STEP)
+}
+
+/// Renders many samples at a time.
+fn by_lanes<V: Voxel + Pairs, C: ByPlace, T: LaneClassifier, S: LaneShader>(
+    frame: &Frame<'_>,
+    settings: &March,
+    field: Trilinear<'_, V>,
+    classifier: &C,
+    columns: &T,
+    shader: &S,
+) -> Result<Rendered> {
+    let computed = Computed::new(frame, &field, classifier);
+    let (magnitude, empty_space) = computed.parts(frame, &field, classifier)?;
+    let units = GradientUnits::new(frame.volume.grid(), frame.volume.rescale());
+    let medium = ByLanes { field, magnitude, units, classifier: columns, shader };
+    Ok(walked(frame, settings, &medium, empty_space, name::<V, C, S>()))
 }
 
 /// Renders level surfaces at the samples of whole steps.
@@ -148,7 +214,7 @@ fn by_spacing<V: Voxel, C: ByPlace, S: Shader>(
     }
 }
 
-/// Computes what this kernel reads, and nothing else, and renders.
+/// Renders one sample after the other.
 fn run<V: Voxel, K: Spacing, C: ByPlace, S: Shader>(
     frame: &Frame<'_>,
     settings: &March,
@@ -156,17 +222,43 @@ fn run<V: Voxel, K: Spacing, C: ByPlace, S: Shader>(
     classifier: &C,
     shader: &S,
 ) -> Result<Rendered> {
-    let grid = frame.volume.grid();
-    let units = GradientUnits::new(grid, frame.volume.rescale());
-    let magnitudes = C::READS_GRADIENT.then(|| gradient_magnitude_per_mm(&field, &units));
-    let magnitude = magnitudes.as_deref().map(|m| Trilinear::new(m, grid.dims())).transpose()?;
-    // Blocks are counted in even steps.
-    let empty_space = (frame.schedule.empty_space_skipping && K::EVEN).then(|| {
-        let magnitudes = magnitude.as_ref().map(Macrocells::new);
-        EmptySpace::new(&Macrocells::new(&field), magnitudes.as_ref(), classifier)
-    });
+    let computed = Computed::new(frame, &field, classifier);
+    let (magnitude, empty_space) = computed.parts(frame, &field, classifier)?;
+    let units = GradientUnits::new(frame.volume.grid(), frame.volume.rescale());
     let medium = Classified { field, magnitude, units, classifier, shader };
-    let (image, tally) = Kernel { medium: &medium, empty_space }.render(frame, settings);
+    Ok(walked(frame, settings, &OneByOne(&medium), empty_space, name::<V, C, S>()))
+}
+
+/// What a kernel reads of a volume, and nothing else.
+struct Computed {
+    /// The gradient magnitude, HU/mm.
+    magnitudes: Option<Vec<f32>>,
+}
+
+impl Computed {
+    fn new<V: Voxel, K: Spacing, C: ByPlace>(frame: &Frame<'_>, field: &Trilinear<'_, V, K>, _: &C) -> Self {
+        let units = GradientUnits::new(frame.volume.grid(), frame.volume.rescale());
+        Computed { magnitudes: C::READS_GRADIENT.then(|| gradient_magnitude_per_mm(field, &units)) }
+    }
+
+    /// The gradient magnitude as a field, and where nothing is to be seen.
+    fn parts<V: Voxel, K: Spacing, C: ByPlace>(
+        &self,
+        frame: &Frame<'_>,
+        field: &Trilinear<'_, V, K>,
+        classifier: &C,
+    ) -> Result<(Option<Trilinear<'_, f32>>, Option<EmptySpace>)> {
+        let magnitude = self.magnitudes.as_deref().map(|m| Trilinear::new(m, field.dims())).transpose()?;
+        // Blocks are counted in even steps.
+        let empty_space = (frame.schedule.empty_space_skipping && K::EVEN).then(|| {
+            let magnitudes = magnitude.as_ref().map(Macrocells::new);
+            EmptySpace::new(&Macrocells::new(field), magnitudes.as_ref(), classifier)
+        });
+        Ok((magnitude, empty_space))
+    }
+}
+
+fn name<V: Voxel, C: ByPlace, S: Shader>() -> String {
     let name = KernelName {
         method: "march",
         voxel: V::NAME,
@@ -174,7 +266,5 @@ fn run<V: Voxel, K: Spacing, C: ByPlace, S: Shader>(
         suffix: C::SUFFIX,
         shader: S::NAME,
     };
-    let statistics =
-        Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel: name.to_string() };
-    Ok(Rendered { image, statistics })
+    name.to_string()
 }

@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use crate::classify::Rgbs;
 use crate::field::{Cell, Position, Spacing, Trilinear, Voxel};
+use crate::math::{Number, Power};
 use crate::scene::{Haze, Shading};
+use crate::simd::{BATCH, Lanes};
 
 /// Shades a sample. Chosen by type, once per frame.
 pub(super) trait Shader: Sync {
@@ -45,6 +47,12 @@ pub(super) trait Shader: Sync {
     }
 }
 
+/// Shades many samples at a time, each as [`Shader::shade`] does.
+pub(super) trait LaneShader: Shader {
+    /// What is there to be seen of samples, given the gradients there, HU/mm; 0 of what is nothing.
+    fn shade_lanes<L: Lanes>(&self, aim: &Self::Aim, samples: Rgbs<L>, gradient_per_mm: [L; 3]) -> Rgbs<L>;
+}
+
 /// Where a sample is.
 pub(super) struct Spot {
     pub(super) cell: Cell,
@@ -73,6 +81,8 @@ pub(super) struct Lit<'a> {
     definition: &'a Shading,
     ambient: f32,
     shininess: f32,
+    /// The shininess, if it is a power by squares and roots.
+    power: Option<Power>,
     two_sided: bool,
     soft_square: f32,
 }
@@ -92,6 +102,7 @@ impl<'a> Lit<'a> {
             definition,
             ambient: definition.ambient as f32,
             shininess: definition.shininess as f32,
+            power: Power::new(definition.shininess as f32),
             two_sided: definition.two_sided,
             soft_square: (definition.soft_gradient_per_mm * definition.soft_gradient_per_mm) as f32,
         }
@@ -102,6 +113,58 @@ impl<'a> Lit<'a> {
     fn facing(&self, cosine: f32) -> f32 {
         let lit = if self.two_sided { cosine.abs() } else { cosine.max(0.0) };
         lit.min(1.0)
+    }
+
+    #[inline(always)]
+    fn gloss(&self, shine: f32) -> f32 {
+        match self.power {
+            Some(power) => power.of(shine),
+            None => shine.powf(self.shininess),
+        }
+    }
+
+    /// [`Lit::gloss`] of many.
+    #[inline(always)]
+    fn glosses<L: Lanes>(&self, shine: L) -> L {
+        if let Some(power) = self.power {
+            return power.of(shine);
+        }
+        let mut all = [0.0; BATCH];
+        shine.store(&mut all);
+        for x in &mut all[..L::LANES] {
+            *x = x.powf(self.shininess);
+        }
+        L::load(&all)
+    }
+
+    /// [`Lit::facing`] of many.
+    #[inline(always)]
+    fn facings<L: Lanes>(&self, cosine: L) -> L {
+        let lit = if self.two_sided { cosine.abs() } else { cosine.max(L::ZERO) };
+        lit.min(L::ONE)
+    }
+
+    /// [`Lit::factors`] of many gradients, operation by operation.
+    #[inline(always)]
+    fn factors_of<L: Lanes>(&self, aim: &[Beam], gradient_per_mm: [L; 3]) -> ([L; 3], [L; 3]) {
+        let (mut reflected, mut highlight) = ([L::splat(self.ambient); 3], [L::ZERO; 3]);
+        let square = dot(gradient_per_mm, gradient_per_mm);
+        let is_there = L::ZERO.lt(square);
+        let fade = square / (square + L::splat(self.soft_square));
+        let toward_normal = -L::ONE / square.sqrt();
+        for beam in aim {
+            let lit = self.facings(dot(gradient_per_mm, splats(beam.towards)) * toward_normal);
+            let shine = self.facings(dot(gradient_per_mm, splats(beam.half)) * toward_normal);
+            let gloss = L::select(L::ZERO.lt(lit), self.glosses(shine), L::ZERO);
+            // Where there is no gradient these are no numbers.
+            let lit = L::select(is_there, fade * lit, L::ZERO);
+            let gloss = L::select(is_there, fade * gloss, L::ZERO);
+            for c in 0..3 {
+                reflected[c] += L::splat(beam.diffuse[c]) * lit;
+                highlight[c] += L::splat(beam.specular[c]) * gloss;
+            }
+        }
+        (reflected, highlight)
     }
 
     /// Factors of the emission and of the extinction at a gradient in HU/mm, with the terms of each light, given by its
@@ -123,7 +186,7 @@ impl<'a> Lit<'a> {
                 let fade = fade * share(light);
                 let lit = self.facing(dot(gradient_per_mm, beam.towards) * toward_normal);
                 let shine = self.facing(dot(gradient_per_mm, beam.half) * toward_normal);
-                let gloss = if lit > 0.0 { shine.powf(self.shininess) } else { 0.0 };
+                let gloss = if lit > 0.0 { self.gloss(shine) } else { 0.0 };
                 for c in 0..3 {
                     reflected[c] += beam.diffuse[c] * (fade * lit);
                     highlight[c] += beam.specular[c] * (fade * gloss);
@@ -163,8 +226,38 @@ impl Shader for Lit<'_> {
     }
 }
 
+impl LaneShader for Unlit {
+    #[inline(always)]
+    fn shade_lanes<L: Lanes>(&self, (): &(), samples: Rgbs<L>, _: [L; 3]) -> Rgbs<L> {
+        samples
+    }
+}
+
+impl LaneShader for Lit<'_> {
+    #[inline(always)]
+    fn shade_lanes<L: Lanes>(
+        &self,
+        aim: &Vec<Beam>,
+        [r, g, b, extinction]: Rgbs<L>,
+        gradient_per_mm: [L; 3],
+    ) -> Rgbs<L> {
+        let (reflected, highlight) = self.factors_of(aim, gradient_per_mm);
+        [
+            r * reflected[0] + extinction * highlight[0],
+            g * reflected[1] + extinction * highlight[1],
+            b * reflected[2] + extinction * highlight[2],
+            extinction,
+        ]
+    }
+}
+
 #[inline(always)]
-fn dot([ax, ay, az]: [f32; 3], [bx, by, bz]: [f32; 3]) -> f32 {
+fn splats<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
+    [L::splat(x), L::splat(y), L::splat(z)]
+}
+
+#[inline(always)]
+fn dot<N: Number>([ax, ay, az]: [N; 3], [bx, by, bz]: [N; 3]) -> N {
     ax * bx + ay * by + az * bz
 }
 

@@ -5,6 +5,7 @@ pub mod bernstein;
 mod each;
 mod number;
 mod opacity;
+mod power;
 mod real;
 pub mod scattering;
 
@@ -12,4 +13,5 @@ pub use absorb::{absorbed_f32, mean_transmittance_f32};
 pub use each::each;
 pub use number::Number;
 pub use opacity::extinction_per_mm;
+pub use power::Power;
 pub use real::Real;

@@ -35,6 +35,8 @@ pub struct Camera {
     /// Columns: right, up, forward; orthonormal.
     frame: DMat3,
     projection: Projection,
+    /// Tangent of half the field of view; 0 of parallel rays.
+    slope: f64,
     size: [usize; 2],
 }
 
@@ -72,7 +74,11 @@ impl Camera {
                 .expected("a target away from the position, and an up vector that is not along the line of sight"));
         }
         let frame = DMat3::from_cols(right, right.cross(forward), forward);
-        Ok(Camera { position_mm, frame, projection, size })
+        let slope = match projection {
+            Projection::Perspective { fov_degrees } => (0.5 * fov_degrees.to_radians()).tan(),
+            Projection::Parallel { .. } => 0.0,
+        };
+        Ok(Camera { position_mm, frame, projection, slope, size })
     }
 
     /// The same view in a picture of another size, at least 1 x 1; of another shape, it shows more or less at the sides.
@@ -119,9 +125,8 @@ impl Camera {
         let across = (2.0 * x - width) / height;
         let upwards = (height - 2.0 * y) / height;
         match self.projection {
-            Projection::Perspective { fov_degrees } => {
-                let slope = (0.5 * fov_degrees.to_radians()).tan();
-                let direction = self.frame * DVec3::new(across * slope, upwards * slope, 1.0);
+            Projection::Perspective { .. } => {
+                let direction = self.frame * DVec3::new(across * self.slope, upwards * self.slope, 1.0);
                 Ray { origin_mm: self.position_mm, direction: direction.normalize() }
             }
             Projection::Parallel { height_mm } => {

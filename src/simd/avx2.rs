@@ -5,9 +5,9 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::lanes::{absorbed, last_pair, last_word, mean_transmittance};
+use super::lanes::{absorbed, last_pair, last_quad, last_word, mean_transmittance};
 use super::register::{arithmetic, operators};
-use super::{Doubles, Ints, Kernel, Lanes, Mask, Table};
+use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, Table};
 use crate::math::Number;
 
 /// Runs a kernel compiled for these instructions.
@@ -81,6 +81,28 @@ fn clamped(at: I32x8, last: u32) -> __m256i {
     unsafe { _mm256_min_epu32(at.0, _mm256_set1_epi32(last as i32)) }
 }
 
+/// The lower and the upper 16 bits of each lane, signed.
+#[inline(always)]
+fn halves(both: __m256i) -> [F32x8; 2] {
+    unsafe {
+        let first = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(both));
+        let second = _mm256_srai_epi32::<16>(both);
+        [F32x8(_mm256_cvtepi32_ps(first)), F32x8(_mm256_cvtepi32_ps(second))]
+    }
+}
+
+/// Entries of a table of two registers, by indices below 16.
+#[inline(always)]
+fn halves_by(table: &[f32; BATCH], at: __m256i) -> F32x8 {
+    let (low, high) = table.split_at(8);
+    unsafe {
+        let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(low.as_ptr()), at);
+        let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(high.as_ptr()), at);
+        // Bit 3 of the index, moved to the sign, chooses the half.
+        F32x8(_mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32::<28>(at))))
+    }
+}
+
 impl Lanes for F32x8 {
     const LANES: usize = 8;
     type Ints = I32x8;
@@ -135,25 +157,21 @@ impl Lanes for F32x8 {
         let entries = table.entries();
         let at = clamped(at, (entries.len() - 1) as u32);
         unsafe {
-            if entries.len() == 16 {
-                let (low, high) = entries.split_at(8);
-                let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(low.as_ptr()), at);
-                let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(high.as_ptr()), at);
-                // Bit 3 of the index, moved to the sign, chooses the half.
-                F32x8(_mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32::<28>(at))))
-            } else {
-                F32x8(_mm256_i32gather_ps::<4>(entries.as_ptr(), at))
+            match entries.try_into() {
+                Ok(entries) => halves_by(entries, at),
+                Err(_) => F32x8(_mm256_i32gather_ps::<4>(entries.as_ptr(), at)),
             }
         }
     }
     #[inline(always)]
+    fn pick16(table: &[f32; BATCH], at: I32x8) -> Self {
+        halves_by(table, clamped(at, BATCH as u32 - 1))
+    }
+    #[inline(always)]
     fn pairs_i16(samples: &[i16], at: I32x8) -> [Self; 2] {
         unsafe {
-            // Two neighbours in one read of 32 bits, the first in its lower half.
-            let both = _mm256_i32gather_epi32::<2>(samples.as_ptr().cast(), clamped(at, last_pair(samples)));
-            let first = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(both));
-            let second = _mm256_srai_epi32::<16>(both);
-            [F32x8(_mm256_cvtepi32_ps(first)), F32x8(_mm256_cvtepi32_ps(second))]
+            // Two neighbours in one read of 32 bits.
+            halves(_mm256_i32gather_epi32::<2>(samples.as_ptr().cast(), clamped(at, last_pair(samples))))
         }
     }
     #[inline(always)]
@@ -161,6 +179,36 @@ impl Lanes for F32x8 {
         let at = clamped(at, last_pair(samples));
         let next = samples[1..].as_ptr();
         unsafe { [F32x8(_mm256_i32gather_ps::<4>(samples.as_ptr(), at)), F32x8(_mm256_i32gather_ps::<4>(next, at))] }
+    }
+    #[inline(always)]
+    fn quads_i16(samples: &[i16], at: I32x8) -> [Self; 4] {
+        unsafe {
+            let at = clamped(at, last_quad(samples));
+            let from = samples.as_ptr().cast();
+            // Four neighbours in one read of 64 bits, for half of the lanes at a time.
+            let low = _mm256_i32gather_epi64::<2>(from, _mm256_castsi256_si128(at));
+            let high = _mm256_i32gather_epi64::<2>(from, _mm256_extracti128_si256::<1>(at));
+            let (low, high) = (_mm256_castsi256_ps(low), _mm256_castsi256_ps(high));
+            // The pairs of lanes 0 1 4 5 2 3 6 7, then put in order.
+            let first = _mm256_castps_pd(_mm256_shuffle_ps::<0b10_00_10_00>(low, high));
+            let second = _mm256_castps_pd(_mm256_shuffle_ps::<0b11_01_11_01>(low, high));
+            let [first, second, third, fourth] = {
+                let first = _mm256_castpd_si256(_mm256_permute4x64_pd::<0b11_01_10_00>(first));
+                let second = _mm256_castpd_si256(_mm256_permute4x64_pd::<0b11_01_10_00>(second));
+                let ([a, b], [c, d]) = (halves(first), halves(second));
+                [a, b, c, d]
+            };
+            [first, second, third, fourth]
+        }
+    }
+    #[inline(always)]
+    fn quads_f32(samples: &[f32], at: I32x8) -> [Self; 4] {
+        let at = clamped(at, last_quad(samples));
+        let mut quads = [F32x8::ZERO; 4];
+        for (k, quad) in quads.iter_mut().enumerate() {
+            *quad = F32x8(unsafe { _mm256_i32gather_ps::<4>(samples[k..].as_ptr(), at) });
+        }
+        quads
     }
     #[inline(always)]
     fn compress(self, mask: Mask8) -> Self {
@@ -282,6 +330,14 @@ impl Sub for I32x8 {
     }
 }
 
+impl Mul for I32x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        I32x8(unsafe { _mm256_mullo_epi32(self.0, other.0) })
+    }
+}
+
 impl Ints for I32x8 {
     type Mask = Mask8;
 
@@ -302,8 +358,12 @@ impl Ints for I32x8 {
         unsafe { _mm256_storeu_si256(to[..8].as_mut_ptr().cast(), self.0) }
     }
     #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        I32x8(unsafe { _mm256_mullo_epi32(self.0, other.0) })
+    fn shifted_right(self, bits: u32) -> Self {
+        I32x8(unsafe { _mm256_srav_epi32(self.0, _mm256_set1_epi32(bits as i32)) })
+    }
+    #[inline(always)]
+    fn and(self, bits: Self) -> Self {
+        I32x8(unsafe { _mm256_and_si256(self.0, bits.0) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
@@ -322,11 +382,6 @@ impl Ints for I32x8 {
         I32x8(unsafe { _mm256_sllv_epi32(_mm256_set1_epi32(1), self.0) })
     }
     #[inline(always)]
-    fn shifted<const BY: u32>(self) -> Self {
-        // Any number of bits at run time: this one wants them as i32.
-        I32x8(unsafe { _mm256_srav_epi32(self.0, _mm256_set1_epi32(BY as i32)) })
-    }
-    #[inline(always)]
     fn bytes(from: &[u8], at: Self) -> Self {
         unsafe {
             let words = _mm256_i32gather_epi32::<1>(from.as_ptr().cast(), clamped(at, last_word(from)));
@@ -343,7 +398,7 @@ impl Ints for I32x8 {
     }
     #[inline(always)]
     fn select(mask: Mask8, yes: Self, no: Self) -> Self {
-        let [no, yes] = [no, yes].map(|x| unsafe { _mm256_castsi256_ps(x.0) });
+        let (no, yes) = unsafe { (_mm256_castsi256_ps(no.0), _mm256_castsi256_ps(yes.0)) };
         I32x8(unsafe { _mm256_castps_si256(_mm256_blendv_ps(no, yes, mask.0)) })
     }
     #[inline(always)]

@@ -5,9 +5,9 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::lanes::{absorbed, last_pair, last_word, mean_transmittance};
+use super::lanes::{absorbed, last_pair, last_quad, last_word, mean_transmittance};
 use super::register::{arithmetic, operators};
-use super::{Doubles, Ints, Kernel, Lanes, Mask, Table};
+use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, Table};
 use crate::math::Number;
 
 /// Runs a kernel compiled for these instructions.
@@ -50,6 +50,27 @@ arithmetic!(
     _mm512_andnot_ps,
     _mm512_set1_ps
 );
+
+/// In lane k what lane k - distance has, and 0 where there is none.
+#[inline(always)]
+fn moved(all: __m512, distance: i32) -> __m512 {
+    // SAFETY: as below.
+    unsafe {
+        let from = _mm512_sub_epi32(I32x16::count().0, _mm512_set1_epi32(distance));
+        _mm512_maskz_permutexvar_ps(u16::MAX << distance, from, all)
+    }
+}
+
+/// The lower and the upper 16 bits of each lane, signed.
+#[inline(always)]
+fn halves(both: __m512i) -> [F32x16; 2] {
+    // SAFETY: as below.
+    unsafe {
+        let first = _mm512_srai_epi32::<16>(_mm512_slli_epi32::<16>(both));
+        let second = _mm512_srai_epi32::<16>(both);
+        [F32x16(_mm512_cvtepi32_ps(first)), F32x16(_mm512_cvtepi32_ps(second))]
+    }
+}
 
 // SAFETY, for every block below: values of these types exist only in kernels that `Level::run` has started, so the processor
 // has the instructions; slices are checked to be as long as what is read or written, and indices are clamped to them.
@@ -122,14 +143,18 @@ impl Lanes for F32x16 {
         }
     }
     #[inline(always)]
+    fn pick16(table: &[f32; BATCH], at: I32x16) -> Self {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(BATCH as i32 - 1));
+            F32x16(_mm512_permutexvar_ps(at, _mm512_loadu_ps(table.as_ptr())))
+        }
+    }
+    #[inline(always)]
     fn pairs_i16(samples: &[i16], at: I32x16) -> [Self; 2] {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_pair(samples) as i32));
-            // Two neighbours in one read of 32 bits, the first in its lower half.
-            let both = _mm512_i32gather_epi32::<2>(at, samples.as_ptr().cast());
-            let first = _mm512_srai_epi32::<16>(_mm512_slli_epi32::<16>(both));
-            let second = _mm512_srai_epi32::<16>(both);
-            [F32x16(_mm512_cvtepi32_ps(first)), F32x16(_mm512_cvtepi32_ps(second))]
+            // Two neighbours in one read of 32 bits.
+            halves(_mm512_i32gather_epi32::<2>(at, samples.as_ptr().cast()))
         }
     }
     #[inline(always)]
@@ -138,6 +163,55 @@ impl Lanes for F32x16 {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_pair(samples) as i32));
             let next = samples[1..].as_ptr();
             [F32x16(_mm512_i32gather_ps::<4>(at, samples.as_ptr())), F32x16(_mm512_i32gather_ps::<4>(at, next))]
+        }
+    }
+    #[inline(always)]
+    fn quads_i16(samples: &[i16], at: I32x16) -> [Self; 4] {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_quad(samples) as i32));
+            // Four neighbours in one read of 64 bits, for half of the lanes at a time.
+            let low = _mm512_i32gather_epi64::<2>(_mm512_castsi512_si256(at), samples.as_ptr().cast());
+            let high = _mm512_i32gather_epi64::<2>(_mm512_extracti32x8_epi32::<1>(at), samples.as_ptr().cast());
+            let even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+            let odd = _mm512_add_epi32(even, _mm512_set1_epi32(1));
+            let [first, second] = halves(_mm512_permutex2var_epi32(low, even, high));
+            let [third, fourth] = halves(_mm512_permutex2var_epi32(low, odd, high));
+            [first, second, third, fourth]
+        }
+    }
+    #[inline(always)]
+    fn quads_f32(samples: &[f32], at: I32x16) -> [Self; 4] {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_quad(samples) as i32));
+            let mut quads = [F32x16::ZERO; 4];
+            for (k, quad) in quads.iter_mut().enumerate() {
+                *quad = F32x16(_mm512_i32gather_ps::<4>(at, samples[k..].as_ptr()));
+            }
+            quads
+        }
+    }
+    #[inline(always)]
+    fn accumulated(opacities: &[f32; BATCH]) -> ([f32; BATCH], f32) {
+        unsafe {
+            let mut all = _mm512_loadu_ps(opacities.as_ptr());
+            for distance in [1, 2, 4, 8] {
+                let left = _mm512_sub_ps(_mm512_set1_ps(1.0), all);
+                all = _mm512_add_ps(all, _mm512_mul_ps(moved(all, distance), left));
+            }
+            let mut before = [0.0; BATCH];
+            _mm512_storeu_ps(before.as_mut_ptr(), moved(all, 1));
+            let last = _mm512_permutexvar_ps(_mm512_set1_epi32(BATCH as i32 - 1), all);
+            (before, _mm512_cvtss_f32(last))
+        }
+    }
+    #[inline(always)]
+    fn sum(numbers: &[f32; BATCH]) -> f32 {
+        unsafe {
+            let all = _mm512_loadu_ps(numbers.as_ptr());
+            let halves = _mm256_add_ps(_mm512_castps512_ps256(all), _mm512_extractf32x8_ps::<1>(all));
+            let quarters = _mm_add_ps(_mm256_castps256_ps128(halves), _mm256_extractf128_ps::<1>(halves));
+            let eighths = _mm_add_ps(quarters, _mm_movehl_ps(quarters, quarters));
+            _mm_cvtss_f32(_mm_add_ss(eighths, _mm_shuffle_ps::<1>(eighths, eighths)))
         }
     }
     #[inline(always)]
@@ -242,6 +316,14 @@ impl Sub for I32x16 {
     }
 }
 
+impl Mul for I32x16 {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        I32x16(unsafe { _mm512_mullo_epi32(self.0, other.0) })
+    }
+}
+
 impl Ints for I32x16 {
     type Mask = Mask16;
 
@@ -262,8 +344,12 @@ impl Ints for I32x16 {
         unsafe { _mm512_storeu_si512(to[..16].as_mut_ptr().cast(), self.0) }
     }
     #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        I32x16(unsafe { _mm512_mullo_epi32(self.0, other.0) })
+    fn shifted_right(self, bits: u32) -> Self {
+        I32x16(unsafe { _mm512_srav_epi32(self.0, _mm512_set1_epi32(bits as i32)) })
+    }
+    #[inline(always)]
+    fn and(self, bits: Self) -> Self {
+        I32x16(unsafe { _mm512_and_si512(self.0, bits.0) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
@@ -280,10 +366,6 @@ impl Ints for I32x16 {
     #[inline(always)]
     fn power_of_two(self) -> Self {
         I32x16(unsafe { _mm512_sllv_epi32(_mm512_set1_epi32(1), self.0) })
-    }
-    #[inline(always)]
-    fn shifted<const BY: u32>(self) -> Self {
-        I32x16(unsafe { _mm512_srai_epi32::<BY>(self.0) })
     }
     #[inline(always)]
     fn bytes(from: &[u8], at: Self) -> Self {

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::Table;
+use super::{BATCH, Table};
 use crate::math::Number;
 
 /// f32 numbers side by side, each computed for itself.
@@ -18,6 +18,11 @@ pub(crate) trait Lanes: Number {
 
     /// The nearest f32 to each f64.
     fn from_doubles(doubles: Self::Doubles) -> Self;
+    /// The same number in every lane.
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self::from_f64(f64::from(x))
+    }
     /// The first numbers of a slice, which has at least as many.
     fn load(from: &[f32]) -> Self;
     /// Overwrites the first numbers of a slice, which has at least as many.
@@ -38,12 +43,46 @@ pub(crate) trait Lanes: Number {
     fn power_of_two(exponent: Self::Ints) -> Self;
     /// Entries of a table; indices beyond its end give its last entry.
     fn pick(table: &Table, at: Self::Ints) -> Self;
+    /// Entries of a table of one register of the widest level; indices beyond its end give its last entry.
+    fn pick16(table: &[f32; BATCH], at: Self::Ints) -> Self;
     /// The samples at `at` and at `at + 1`, as f32: see [`Pairs`].
     fn pairs_i16(samples: &[i16], at: Self::Ints) -> [Self; 2];
     /// The samples at `at` and at `at + 1`: see [`Pairs`].
     fn pairs_f32(samples: &[f32], at: Self::Ints) -> [Self; 2];
+    /// The samples from `at` to `at + 3`, as f32: see [`Pairs`].
+    fn quads_i16(samples: &[i16], at: Self::Ints) -> [Self; 4];
+    /// The samples from `at` to `at + 3`: see [`Pairs`].
+    fn quads_f32(samples: &[f32], at: Self::Ints) -> [Self; 4];
     /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
     fn compress(self, mask: Self::Mask) -> Self;
+
+    /// Opacities in the order in which light meets them, combined: of all before each, and of all of them. `a ∘ b = a + b − a b`
+    /// is accurate however small they are; in a tree of four levels, the same at every level of instructions.
+    #[inline(always)]
+    fn accumulated(opacities: &[f32; BATCH]) -> ([f32; BATCH], f32) {
+        let mut all = *opacities;
+        for distance in [1, 2, 4, 8] {
+            let before = all;
+            for k in distance..BATCH {
+                all[k] = before[k] + before[k - distance] * (1.0 - before[k]);
+            }
+        }
+        let mut before = [0.0; BATCH];
+        before[1..].copy_from_slice(&all[..BATCH - 1]);
+        (before, all[BATCH - 1])
+    }
+
+    /// The sum of numbers, in a tree: halves, quarters, eighths, pairs.
+    #[inline(always)]
+    fn sum(numbers: &[f32; BATCH]) -> f32 {
+        let mut sums = *numbers;
+        for half in [8, 4, 2, 1] {
+            for k in 0..half {
+                sums[k] += sums[k + half];
+            }
+        }
+        sums[0]
+    }
 }
 
 /// f64 numbers side by side.
@@ -77,8 +116,10 @@ pub(crate) trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<O
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 }
 
-/// i32 numbers side by side.
-pub(crate) trait Ints: Copy + Default + Add<Output = Self> + Sub<Output = Self> + 'static {
+/// i32 numbers side by side; arithmetic wraps.
+pub(crate) trait Ints:
+    Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static
+{
     /// As many truths.
     type Mask: Mask;
 
@@ -90,18 +131,18 @@ pub(crate) trait Ints: Copy + Default + Add<Output = Self> + Sub<Output = Self> 
     fn load(from: &[i32]) -> Self;
     /// Overwrites the first numbers of a slice, which has at least as many.
     fn store(self, to: &mut [i32]);
-    /// `self · other`, of numbers whose product fits.
-    fn times(self, other: Self) -> Self;
-    /// The lower number.
+    /// Halved so many times, towards -∞.
+    fn shifted_right(self, bits: u32) -> Self;
+    /// The bits that both have.
+    fn and(self, bits: Self) -> Self;
+    /// The smaller one.
     fn min(self, other: Self) -> Self;
-    /// The higher number.
+    /// The larger one.
     fn max(self, other: Self) -> Self;
     /// Each without its `by` lowest bits: rounded down to a multiple of 2^`by`, `by` from 0 to 31.
     fn without_low_bits(self, by: Self) -> Self;
     /// 2^`self`, for numbers from 0 to 30.
     fn power_of_two(self) -> Self;
-    /// Divided by 2^`BY`, rounded down.
-    fn shifted<const BY: u32>(self) -> Self;
     /// Bytes of a slice; indices beyond its end give another byte of it. It has at least four.
     fn bytes(from: &[u8], at: Self) -> Self;
     /// `self = other`.
@@ -139,6 +180,8 @@ pub(crate) trait Pairs: Sized {
     /// The samples at `at` and at `at + 1`, as f32. Indices at which no pair begins give another pair of the slice, which has
     /// at least two samples and at most 2³¹.
     fn pairs<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 2];
+    /// The samples from `at` to `at + 3`, as f32; likewise, of a slice of at least four.
+    fn quads<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 4];
 }
 
 impl Pairs for i16 {
@@ -146,12 +189,20 @@ impl Pairs for i16 {
     fn pairs<L: Lanes>(samples: &[i16], at: L::Ints) -> [L; 2] {
         L::pairs_i16(samples, at)
     }
+    #[inline(always)]
+    fn quads<L: Lanes>(samples: &[i16], at: L::Ints) -> [L; 4] {
+        L::quads_i16(samples, at)
+    }
 }
 
 impl Pairs for f32 {
     #[inline(always)]
     fn pairs<L: Lanes>(samples: &[f32], at: L::Ints) -> [L; 2] {
         L::pairs_f32(samples, at)
+    }
+    #[inline(always)]
+    fn quads<L: Lanes>(samples: &[f32], at: L::Ints) -> [L; 4] {
+        L::quads_f32(samples, at)
     }
 }
 
@@ -168,6 +219,13 @@ pub(super) fn last_pair<T>(samples: &[T]) -> u32 {
 pub(super) fn last_word(bytes: &[u8]) -> u32 {
     assert!(bytes.len() >= 4, "a word has four bytes");
     (bytes.len() - 4).min(i32::MAX as usize) as u32
+}
+
+/// The last index at which four samples begin.
+#[inline(always)]
+pub(super) fn last_quad<T>(samples: &[T]) -> u32 {
+    assert!(samples.len() >= 4, "four samples");
+    (samples.len() - 4).min(i32::MAX as usize) as u32
 }
 
 /// `1 − e^{−τ}` as [`absorbed_f32`](crate::math::absorbed_f32) has it, operation by operation.

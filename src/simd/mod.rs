@@ -24,5 +24,9 @@ pub(crate) use lanes::{Doubles, Ints, Lanes, Mask, Pairs};
 pub(crate) use level::Kernel;
 pub(crate) use table::Table;
 
+/// Numbers in a register of the widest level. What is summed over neighbours is summed over so many at every level, in the
+/// same order.
+pub(crate) const BATCH: usize = 16;
+
 #[cfg(test)]
 mod tests;

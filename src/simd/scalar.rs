@@ -1,7 +1,7 @@
 //! One lane: the twin of every register, on any processor.
 
-use super::lanes::last_pair;
-use super::{Doubles, Ints, Lanes, Mask, Table};
+use super::lanes::{last_pair, last_quad};
+use super::{BATCH, Doubles, Ints, Lanes, Mask, Table};
 
 impl Lanes for f32 {
     const LANES: usize = 1;
@@ -55,6 +55,10 @@ impl Lanes for f32 {
         entries[(at as u32 as usize).min(entries.len() - 1)]
     }
     #[inline(always)]
+    fn pick16(table: &[f32; BATCH], at: i32) -> Self {
+        table[(at as u32 as usize).min(BATCH - 1)]
+    }
+    #[inline(always)]
     fn pairs_i16(samples: &[i16], at: i32) -> [Self; 2] {
         let at = (at as u32).min(last_pair(samples)) as usize;
         [f32::from(samples[at]), f32::from(samples[at + 1])]
@@ -63,6 +67,16 @@ impl Lanes for f32 {
     fn pairs_f32(samples: &[f32], at: i32) -> [Self; 2] {
         let at = (at as u32).min(last_pair(samples)) as usize;
         [samples[at], samples[at + 1]]
+    }
+    #[inline(always)]
+    fn quads_i16(samples: &[i16], at: i32) -> [Self; 4] {
+        let four = &samples[(at as u32).min(last_quad(samples)) as usize..][..4];
+        [f32::from(four[0]), f32::from(four[1]), f32::from(four[2]), f32::from(four[3])]
+    }
+    #[inline(always)]
+    fn quads_f32(samples: &[f32], at: i32) -> [Self; 4] {
+        let four = &samples[(at as u32).min(last_quad(samples)) as usize..][..4];
+        [four[0], four[1], four[2], four[3]]
     }
     #[inline(always)]
     fn compress(self, _: bool) -> Self {
@@ -140,16 +154,20 @@ impl Ints for i32 {
         to[0] = self;
     }
     #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        self * other
+    fn shifted_right(self, bits: u32) -> Self {
+        self >> bits
+    }
+    #[inline(always)]
+    fn and(self, bits: Self) -> Self {
+        self & bits
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Ord::min(self, other)
+        if other < self { other } else { self }
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Ord::max(self, other)
+        if other > self { other } else { self }
     }
     #[inline(always)]
     fn without_low_bits(self, by: Self) -> Self {
@@ -158,10 +176,6 @@ impl Ints for i32 {
     #[inline(always)]
     fn power_of_two(self) -> Self {
         1 << self
-    }
-    #[inline(always)]
-    fn shifted<const BY: u32>(self) -> Self {
-        self >> BY
     }
     #[inline(always)]
     fn bytes(from: &[u8], at: Self) -> Self {

@@ -8,7 +8,7 @@ pub(crate) struct Table {
 
 impl Table {
     /// Entries of the widest register: tables of so many, or twice as many, are looked up without touching memory.
-    pub(super) const REGISTER: usize = 16;
+    pub(super) const REGISTER: usize = super::BATCH;
 
     /// A table of these entries, at least one. What lies beyond them is the last one.
     pub(crate) fn new(entries: &[f32]) -> Self {

@@ -1,6 +1,6 @@
 //! One body over all levels: every lane does what one number does, to the bit.
 
-use super::{Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, Table};
+use super::{BATCH, Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, Table};
 
 /// Numbers of all magnitudes, signs and roundings, the same on each call.
 fn numbers(count: usize, seed: u32) -> Vec<f32> {
@@ -26,7 +26,8 @@ impl Kernel for Everything {
         let tables = [9, 31, 50].map(|n| Table::new(&numbers(n, 4)));
         let bytes: Vec<u8> = samples.iter().map(|&x| x as u8).collect();
         let places: Vec<i32> = a.iter().map(|x| (x.abs() * 7.0) as i32).collect();
-        let mut out = vec![Vec::new(); 48];
+        let sixteen: [f32; BATCH] = std::array::from_fn(|i| b[i]);
+        let mut out = vec![Vec::new(); 60];
         for at in (0..4096).step_by(L::LANES) {
             let (x, y) = (L::load(&a[at..]), L::load(&b[at..]));
             let places = L::Ints::load(&places[at..]);
@@ -58,6 +59,9 @@ impl Kernel for Everything {
                 L::select(<L::Mask as Mask>::ALL.and_not(less), x, y),
                 L::select(places.eq(L::Ints::splat(7)), x, y),
                 L::select(places.lt(whole), x, y),
+                L::from_ints(places * whole - places.min(whole).shifted_right(2)),
+                L::from_ints(whole.and(L::Ints::splat(0xff0f)) + places.max(whole)),
+                L::pick16(&sixteen, places),
             ];
             let [first, second] = i16::pairs::<L>(&samples, places);
             let [third, fourth] = f32::pairs::<L>(&b, places);
@@ -72,17 +76,23 @@ impl Kernel for Everything {
                 L::from_doubles(L::Doubles::select(d.lt(e), d * e, e)),
                 L::from_doubles(L::Doubles::select(d.le(e).and_not(less), d, e)),
                 L::from_ints(d.to_ints()),
-                L::from_ints(few.times(whole)),
+                L::from_ints(few * whole),
                 L::from_ints(whole.without_low_bits(few)),
                 L::from_ints(few.power_of_two()),
-                L::from_ints(whole.shifted::<2>()),
                 L::from_ints(L::Ints::bytes(&bytes, places)),
             ];
             let mut lanes = vec![0.0; L::LANES];
-            for (k, v) in found.into_iter().chain([first, second, third, fourth]).chain(more).enumerate() {
+            let pairs = [first, second, third, fourth];
+            let quads = [i16::quads::<L>(&samples, places), f32::quads::<L>(&b, places)].concat();
+            for (k, v) in found.into_iter().chain(pairs).chain(quads).chain(more).enumerate() {
                 v.store(&mut lanes);
                 out[k].extend(lanes.iter().map(|v| v.to_bits()));
             }
+        }
+        for batch in a.as_chunks::<BATCH>().0 {
+            let (before, all) = L::accumulated(&batch.map(|x| crate::math::absorbed_f32(x.abs())));
+            out[40].extend(before.map(f32::to_bits));
+            out[41].extend([(all + L::sum(batch)).to_bits(); BATCH]);
         }
         out.concat()
     }
@@ -151,4 +161,16 @@ fn levels_are_known_by_name() {
     }
     assert!("sse".parse::<Level>().unwrap_err().contains("avx2"), "a wrong name lists the right ones");
     assert!(Level::widest().is_available() && Level::Scalar.is_available());
+}
+
+#[test]
+fn accumulated_opacity_is_accurate_however_small() {
+    for opacity in [1e-30f32, 1e-8, 1e-3, 0.25, 1.0] {
+        let (before, all) = f32::accumulated(&[opacity; BATCH]);
+        for (k, &found) in before.iter().chain([&all]).enumerate().skip(1) {
+            let expected = -(k as f64 * (-f64::from(opacity)).ln_1p()).exp_m1();
+            let apart = (f64::from(found) / expected - 1.0).abs();
+            assert!(apart < 1e-6, "{k} of opacity {opacity:e}: {found:e}, expected {expected:e}");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use pellucid::plan::{Emission, Lattice, March, SampleRule};
 use pellucid::scene::{Projection, Ray, Scene, Shading};
+use pellucid::simd::Level;
 use pellucid::volume::Volume;
 
 use super::scenes::{MARCH, apart, blobs_f32, blobs_i16, marched, oblique, scene, tissue_1d, tissue_2d, two_lights};
@@ -140,7 +141,7 @@ fn every_kernel_equals_the_naive_march() {
             for (shading, shader) in [(None, "unlit"), (Some(two_lights()), "lit")] {
                 let scene = scene(&volume, transfer_function.clone(), shading);
                 let found = marched(&volume, &scene, MARCH);
-                assert_eq!(found.statistics.kernel, format!("march/{voxel}/{classifier}/{shader}"));
+                assert_eq!(found.statistics.kernel, format!("march/{voxel}/{classifier}/{shader}/{}", Level::widest()));
                 let expected = march(&volume, &scene, &MARCH);
                 let worst = apart(found.image.pixels(), &expected);
                 assert!(worst < 1e-5, "{}: {worst:e} from the naive march", found.statistics.kernel);

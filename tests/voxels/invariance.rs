@@ -64,6 +64,11 @@ fn kernels_are_named_by_what_they_read() {
             })
         })
         .collect();
-    let expected = ["march/rgba8/unlit", "exact/rgba8/unlit/f64", "march/voxels/tf2d/lit", "exact/voxels/tf2d/lit/f64"];
+    let expected = [
+        "march/rgba8/unlit/scalar",
+        "exact/rgba8/unlit/f64",
+        "march/voxels/tf2d/lit/scalar",
+        "exact/voxels/tf2d/lit/f64",
+    ];
     assert_eq!(names, expected);
 }

@@ -1,15 +1,28 @@
-//! Compositing of a run of samples.
+//! Compositing of a batch of samples.
 //!
 //! With `x = σΔ` an interval absorbs the share `A = 1 − e^{−x}` of the light from behind and adds `L = q Δ A/x`, which is
-//! `A q/σ`, and `qΔ` where nothing absorbs. `A` and `L` are computed in f32, accurate relative to themselves, but summed
-//! in f64, with transmittance updated as `T −= T A`: in f32, intervals of opacity 1e-8 would leave `T` at 1 however many
-//! there are, and a small step would turn the volume transparent.
+//! `A q/σ`, and `qΔ` where nothing absorbs. `A` and `L` are computed in f32, accurate relative to themselves. The opacities of
+//! a batch are combined by `a ∘ b = a + b − a b` in a tree, accurate relative to themselves too, and what the batch adds is
+//! summed in a tree; both trees are the same at every level of instructions. Batches are summed in f64, with transmittance
+//! updated as `T −= T A`: in f32, intervals of opacity 1e-8 would leave `T` at 1 however many there are, and a small step would
+//! turn the volume transparent.
 
 use crate::classify::Rgbs;
+use crate::field::SAMPLES;
 use crate::integrate::tiles::Radiance;
-use crate::math::{absorbed_f32, mean_transmittance_f32};
+use crate::math::each;
 use crate::plan::{Colors, Emission, March, Order, SampleRule};
 use crate::scene::Haze;
+use crate::simd::Lanes;
+
+/// Emission in red, green and blue, and extinction of the samples of a batch, in the order they are visited; 0 behind the last.
+pub(super) type Run = [[f32; SAMPLES]; 4];
+
+/// Below this transmittance the largest f32 adds nothing to a pixel.
+const NOTHING_LEFT: f64 = f32::MIN_POSITIVE as f64 * f32::MIN_POSITIVE as f64 * f32::EPSILON as f64;
+
+/// Nothing.
+pub(super) const EMPTY: Run = [[0.0; SAMPLES]; 4];
 
 /// Light gathered along a ray so far.
 #[derive(Debug, Clone, Copy)]
@@ -30,12 +43,12 @@ impl Light {
     /// Before the first sample.
     pub(super) fn new(settings: &March) -> Self {
         let stop_below = match settings.order {
-            Order::FrontToBack => settings.termination_transmittance,
+            Order::FrontToBack => settings.termination_transmittance.max(NOTHING_LEFT),
             Order::BackToFront => 0.0,
         };
         let stretch = match settings.order {
-            Order::FrontToBack => FrontToBack::composite::<Associated>,
-            Order::BackToFront => BackToFront::composite::<Associated>,
+            Order::FrontToBack => FrontToBack::composite,
+            Order::BackToFront => BackToFront::composite,
         };
         Light { color: [0.0; 3], transmittance: 1.0, stop_below, previous: None, stretch }
     }
@@ -49,13 +62,25 @@ impl Light {
     /// Composites something thin, front to back: what it adds, premultiplied, and its opacity.
     #[inline(always)]
     pub(super) fn pass(&mut self, added: [f64; 3], opacity: f64) {
-        FrontToBack::composite::<Associated>(self, added, opacity);
+        FrontToBack::composite(self, added, opacity);
     }
 
     /// What reaches the eye, after so many samples.
     #[inline(always)]
     pub(super) fn radiance(&self, samples: u64) -> Radiance {
         Radiance { color: self.color, transmittance: self.transmittance, samples, error_bound: 0.0 }
+    }
+
+    /// Whether the next interval shows something even if its sample is nothing: half of the one before.
+    #[inline(always)]
+    pub(super) fn lingers(&self) -> bool {
+        self.previous.is_some_and(|before| before != [0.0; 4])
+    }
+
+    /// Passes a sample that is nothing, behind one that was nothing too.
+    #[inline(always)]
+    pub(super) fn rest(&mut self) {
+        self.previous = Some([0.0; 4]);
     }
 
     /// True when a ray need not go on.
@@ -65,8 +90,8 @@ impl Light {
     }
 }
 
-/// Composites samples in the order they are visited; each stands for `delta_mm`. Stops when the light is spent.
-pub(super) type Fold = fn(&mut Light, &[Rgbs<f32>], f32);
+/// Composites the samples of a batch, so many of them, each of which stands for its own length, mm.
+pub(super) type Fold = fn(&mut Light, &Run, &[f32; SAMPLES], usize);
 
 /// The fold that these settings ask for.
 pub(super) fn fold(settings: &March) -> Fold {
@@ -74,6 +99,20 @@ pub(super) fn fold(settings: &March) -> Fold {
         SampleRule::Left | SampleRule::Midpoint | SampleRule::WholeSteps => by_order::<OnePoint>(settings),
         SampleRule::Trapezoid => by_order::<TwoPoints>(settings),
     }
+}
+
+/// Whether these settings ask for [`fold_plain`].
+pub(super) fn is_plain(settings: &March) -> bool {
+    settings.rule != SampleRule::Trapezoid
+        && settings.order == Order::FrontToBack
+        && (settings.colors, settings.emission) == (Colors::Associated, Emission::PerLength)
+        && settings.table.is_none()
+}
+
+/// The fold of most pictures, with the registers of a level.
+#[inline(always)]
+pub(super) fn fold_plain<L: Lanes>(light: &mut Light, run: &Run, delta_mm: &[f32; SAMPLES], samples: usize) {
+    fold_batch::<L, OnePoint, FrontToBack, Associated, PerLength>(light, run, delta_mm, samples);
 }
 
 fn by_order<R: Rule>(settings: &March) -> Fold {
@@ -85,36 +124,52 @@ fn by_order<R: Rule>(settings: &March) -> Fold {
 
 fn by_colors<R: Rule, D: Direction>(settings: &March) -> Fold {
     if settings.table.is_some() {
-        return fold_run::<R, D, Associated, PerStep>;
+        return fold_batch::<f32, R, D, Associated, PerStep>;
     }
     match (settings.colors, settings.emission) {
-        (Colors::Associated, Emission::PerLength) => fold_run::<R, D, Associated, PerLength>,
-        (Colors::Associated, Emission::PerSample) => fold_run::<R, D, Associated, PerSample>,
-        (Colors::Straight, Emission::PerLength) => fold_run::<R, D, Straight, PerLength>,
-        (Colors::Straight, Emission::PerSample) => fold_run::<R, D, Straight, PerSample>,
+        (Colors::Associated, Emission::PerLength) => fold_batch::<f32, R, D, Associated, PerLength>,
+        (Colors::Associated, Emission::PerSample) => fold_batch::<f32, R, D, Associated, PerSample>,
+        (Colors::Straight, Emission::PerLength) => fold_batch::<f32, R, D, Straight, PerLength>,
+        (Colors::Straight, Emission::PerSample) => fold_batch::<f32, R, D, Straight, PerSample>,
     }
 }
 
-fn fold_run<R: Rule, D: Direction, K: Coloring, E: Measure>(light: &mut Light, run: &[Rgbs<f32>], delta_mm: f32) {
-    for &sample in run {
-        let Some(mean) = R::mean(&mut light.previous, sample) else { continue };
-        if mean == [0.0; 4] {
-            continue;
-        }
-        let [r, g, b, extinction] = mean;
-        let depth = extinction * delta_mm;
-        let weight = E::weight(depth, delta_mm);
-        let added = [r, g, b].map(|q| f64::from(q * weight));
-        D::composite::<K>(light, added, f64::from(E::opacity(extinction, depth)));
-        if light.is_spent() {
-            return;
+#[inline(always)]
+fn fold_batch<L: Lanes, R: Rule, D: Direction, K: Coloring, E: Measure>(
+    light: &mut Light,
+    run: &Run,
+    delta_mm: &[f32; SAMPLES],
+    samples: usize,
+) {
+    let means = D::from_the_eye(R::means(&mut light.previous, run, samples));
+    let [delta_mm] = D::from_the_eye([*delta_mm]);
+    let mut opacities = [0.0; SAMPLES];
+    let mut added = [[0.0; SAMPLES]; 3];
+    for at in (0..SAMPLES).step_by(L::LANES) {
+        let (extinction, delta) = (L::load(&means[3][at..]), L::load(&delta_mm[at..]));
+        let depth = extinction * delta;
+        let weight = E::weight(depth, delta);
+        E::opacity(extinction, depth).store(&mut opacities[at..]);
+        for c in 0..3 {
+            (L::load(&means[c][at..]) * weight).store(&mut added[c][at..]);
         }
     }
+    let (before, opacity) = L::accumulated(&opacities);
+    for at in (0..SAMPLES).step_by(L::LANES) {
+        let (share, own) = (L::ONE - L::load(&before[at..]), L::load(&opacities[at..]));
+        for channel in &mut added {
+            K::contribution(L::load(&channel[at..]), own, share).store(&mut channel[at..]);
+        }
+    }
+    let [red, green, blue] = &added;
+    let added = [f64::from(L::sum(red)), f64::from(L::sum(green)), f64::from(L::sum(blue))];
+    D::composite(light, added, f64::from(opacity));
 }
 
 /// What stands for an interval.
 trait Rule {
-    fn mean(previous: &mut Option<Rgbs<f32>>, sample: Rgbs<f32>) -> Option<Rgbs<f32>>;
+    /// Per sample, the mean over its interval.
+    fn means(previous: &mut Option<Rgbs<f32>>, run: &Run, samples: usize) -> Run;
 }
 
 struct OnePoint;
@@ -122,27 +177,35 @@ struct TwoPoints;
 
 impl Rule for OnePoint {
     #[inline(always)]
-    fn mean(_previous: &mut Option<Rgbs<f32>>, sample: Rgbs<f32>) -> Option<Rgbs<f32>> {
-        Some(sample)
+    fn means(_: &mut Option<Rgbs<f32>>, run: &Run, _: usize) -> Run {
+        *run
     }
 }
 
 impl Rule for TwoPoints {
     #[inline(always)]
-    fn mean(previous: &mut Option<Rgbs<f32>>, sample: Rgbs<f32>) -> Option<Rgbs<f32>> {
-        let before = previous.replace(sample)?;
-        Some(std::array::from_fn(|c| 0.5 * (before[c] + sample[c])))
+    fn means(previous: &mut Option<Rgbs<f32>>, run: &Run, samples: usize) -> Run {
+        let mut means = EMPTY;
+        for (c, (means, run)) in means.iter_mut().zip(run).enumerate() {
+            // The first sample of all closes no interval.
+            means[0] = previous.map_or(0.0, |before| 0.5 * (before[c] + run[0]));
+            for k in 1..samples {
+                means[k] = 0.5 * (run[k - 1] + run[k]);
+            }
+        }
+        *previous = Some(each(|c| run[c][samples - 1]));
+        means
     }
 }
 
 /// What a sample's emission is multiplied by.
 trait Measure {
-    fn weight(depth: f32, delta_mm: f32) -> f32;
+    fn weight<L: Lanes>(depth: L, delta_mm: L) -> L;
 
     /// The share absorbed by an interval of this optical depth.
     #[inline(always)]
-    fn opacity(_extinction: f32, depth: f32) -> f32 {
-        absorbed_f32(depth)
+    fn opacity<L: Lanes>(_extinction: L, depth: L) -> L {
+        depth.absorbed()
     }
 }
 
@@ -153,34 +216,34 @@ struct PerStep;
 
 impl Measure for PerStep {
     #[inline(always)]
-    fn weight(_depth: f32, _delta_mm: f32) -> f32 {
-        1.0
+    fn weight<L: Lanes>(_depth: L, _delta_mm: L) -> L {
+        L::ONE
     }
 
     #[inline(always)]
-    fn opacity(of_a_step: f32, _depth: f32) -> f32 {
+    fn opacity<L: Lanes>(of_a_step: L, _depth: L) -> L {
         of_a_step
     }
 }
 
 impl Measure for PerLength {
     #[inline(always)]
-    fn weight(depth: f32, delta_mm: f32) -> f32 {
-        delta_mm * mean_transmittance_f32(depth)
+    fn weight<L: Lanes>(depth: L, delta_mm: L) -> L {
+        delta_mm * depth.mean_transmittance()
     }
 }
 
 impl Measure for PerSample {
     #[inline(always)]
-    fn weight(_depth: f32, _delta_mm: f32) -> f32 {
-        1.0
+    fn weight<L: Lanes>(_depth: L, _delta_mm: L) -> L {
+        L::ONE
     }
 }
 
 /// What colour is composited.
 trait Coloring {
     /// `share` of the light `added` by an interval of this opacity.
-    fn contribution(added: [f64; 3], opacity: f64, share: f64) -> [f64; 3];
+    fn contribution<L: Lanes>(added: L, opacity: L, share: L) -> L;
 }
 
 struct Associated;
@@ -188,27 +251,26 @@ struct Straight;
 
 impl Coloring for Associated {
     #[inline(always)]
-    fn contribution(added: [f64; 3], _opacity: f64, share: f64) -> [f64; 3] {
-        added.map(|x| share * x)
+    fn contribution<L: Lanes>(added: L, _opacity: L, share: L) -> L {
+        share * added
     }
 }
 
 impl Coloring for Straight {
     #[inline(always)]
-    fn contribution(added: [f64; 3], opacity: f64, share: f64) -> [f64; 3] {
-        if opacity > 0.0 {
-            let straight = added.map(|x| x / opacity);
-            straight.map(|x| share * opacity * x)
-        } else {
-            // What emits without absorbing has no straight colour.
-            added.map(|x| share * x)
-        }
+    fn contribution<L: Lanes>(added: L, opacity: L, share: L) -> L {
+        // What emits without absorbing has no straight colour.
+        L::select(L::ZERO.lt(opacity), share * opacity * (added / opacity), share * added)
     }
 }
 
 /// From which end a ray is composited.
 trait Direction {
-    fn composite<K: Coloring>(light: &mut Light, added: [f64; 3], opacity: f64);
+    /// Numbers in the order they are visited, as the eye meets them.
+    fn from_the_eye<const N: usize>(numbers: [[f32; SAMPLES]; N]) -> [[f32; SAMPLES]; N];
+
+    /// Composites what has this opacity and adds this.
+    fn composite(light: &mut Light, added: [f64; 3], opacity: f64);
 }
 
 struct FrontToBack;
@@ -216,18 +278,27 @@ struct BackToFront;
 
 impl Direction for FrontToBack {
     #[inline(always)]
-    fn composite<K: Coloring>(light: &mut Light, added: [f64; 3], opacity: f64) {
-        let more = K::contribution(added, opacity, light.transmittance);
-        light.color = std::array::from_fn(|c| light.color[c] + more[c]);
+    fn from_the_eye<const N: usize>(numbers: [[f32; SAMPLES]; N]) -> [[f32; SAMPLES]; N] {
+        numbers
+    }
+
+    #[inline(always)]
+    fn composite(light: &mut Light, added: [f64; 3], opacity: f64) {
+        light.color = each(|c| light.color[c] + light.transmittance * added[c]);
         light.transmittance -= light.transmittance * opacity;
     }
 }
 
 impl Direction for BackToFront {
     #[inline(always)]
-    fn composite<K: Coloring>(light: &mut Light, added: [f64; 3], opacity: f64) {
-        let more = K::contribution(added, opacity, 1.0);
-        light.color = std::array::from_fn(|c| light.color[c] - light.color[c] * opacity + more[c]);
+    fn from_the_eye<const N: usize>(mut numbers: [[f32; SAMPLES]; N]) -> [[f32; SAMPLES]; N] {
+        numbers.iter_mut().for_each(|all| all.reverse());
+        numbers
+    }
+
+    #[inline(always)]
+    fn composite(light: &mut Light, added: [f64; 3], opacity: f64) {
+        light.color = each(|c| light.color[c] - light.color[c] * opacity + added[c]);
         light.transmittance -= light.transmittance * opacity;
     }
 }
@@ -253,7 +324,18 @@ mod tests {
 
     fn folded(settings: &March, samples: &[Rgbs<f32>], delta_mm: f32) -> Light {
         let mut light = Light::new(settings);
-        fold(settings)(&mut light, samples, delta_mm);
+        for batch in samples.chunks(SAMPLES) {
+            if light.is_spent() {
+                break;
+            }
+            let mut run = EMPTY;
+            for (k, sample) in batch.iter().enumerate() {
+                for c in 0..4 {
+                    run[c][k] = sample[c];
+                }
+            }
+            fold(settings)(&mut light, &run, &[delta_mm; SAMPLES], batch.len());
+        }
         light
     }
 
@@ -303,7 +385,7 @@ mod tests {
         let settings = March { termination_transmittance: 0.01, ..SETTINGS };
         let light = folded(&settings, &[[0.0, 0.0, 0.0, 1.0]; 100], 1.0);
         assert!(light.is_spent());
-        let expected = (-5.0f64).exp();
-        assert!((light.transmittance - expected).abs() < 1e-6, "stops after 5: found {}", light.transmittance);
+        let expected = (-16.0f64).exp();
+        assert!((light.transmittance - expected).abs() < 1e-7, "stops after a batch: found {}", light.transmittance);
     }
 }

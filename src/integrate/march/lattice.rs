@@ -104,10 +104,16 @@ impl Cuts {
         if rule == SampleRule::WholeSteps {
             return self.whole_steps().in_order(order);
         }
-        let mut stretches = match rule {
+        let stretches = match rule {
             SampleRule::Left | SampleRule::Midpoint | SampleRule::WholeSteps => {
                 let place = |i: usize| if rule == SampleRule::Left { self.at(i) } else { middle(i) };
                 let one = |i: usize, samples: usize| stretch(place(i), place(i), samples, length(i));
+                if n > 1 && self.first_mm == self.step_mm {
+                    // The first interval is as long as the others.
+                    let whole = stretch(place(0), place(n - 2), n - 1, self.step_mm);
+                    let all = [whole, one(n - 1, 1), Stretch::default(), Stretch::default()];
+                    return ordered(all, order);
+                }
                 let between = stretch(place(1), place(n.max(2) - 2), inner, self.step_mm);
                 [one(0, 1), between, one(n - 1, usize::from(n > 1)), Stretch::default()]
             }
@@ -131,14 +137,19 @@ impl Cuts {
                 }
             }
         };
-        if order == Order::BackToFront {
-            stretches.reverse();
-            for s in &mut stretches {
-                (s.first_mm, s.last_mm) = (s.last_mm, s.first_mm);
-            }
-        }
-        stretches
+        ordered(stretches, order)
     }
+}
+
+/// Stretches given front to back, in the order they are visited.
+fn ordered(mut stretches: [Stretch; 4], order: Order) -> [Stretch; 4] {
+    if order == Order::BackToFront {
+        stretches.reverse();
+        for s in &mut stretches {
+            (s.first_mm, s.last_mm) = (s.last_mm, s.first_mm);
+        }
+    }
+    stretches
 }
 
 #[cfg(test)]

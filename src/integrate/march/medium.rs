@@ -1,15 +1,44 @@
-//! What absorbs and emits at a position.
+//! What absorbs and emits along a ray.
 
 use glam::DVec3;
 
 use super::by_place::ByPlace;
+use super::composite::{EMPTY, Run};
 use crate::classify::Rgbs;
-use crate::field::{GradientUnits, Position, Spacing, Trilinear, Voxel};
+use crate::field::{Batch, GradientUnits, Position, Spacing, Trilinear, Voxel};
 use crate::integrate::shade::{Shader, Spot};
 use crate::scene::Haze;
+use crate::simd::Lanes;
 
 /// What absorbs and emits. It reads of the volume what it needs, and nothing else; chosen by type, once per frame.
 pub(in super::super) trait Medium: Sync {
+    /// What is constant along a ray.
+    type Aim: Default;
+    /// Whether it reads the offsets of a batch.
+    const BY_LANES: bool;
+
+    /// Computes what is constant along a ray of this direction.
+    fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
+
+    /// Shaded emission and extinction of a batch, 1/mm, none of them negative and 0 behind the last sample; `None` if there is
+    /// nothing.
+    fn run<L: Lanes>(&self, aim: &Self::Aim, batch: &Batch<'_>, distance_mm: impl Fn(usize) -> f64) -> Option<Run>;
+
+    /// What is there where nothing absorbs or emits of itself.
+    #[inline(always)]
+    fn space(&self) -> Rgbs<f32> {
+        [0.0; 4]
+    }
+
+    /// The medium that is there, if it fills the space around the volume too.
+    #[inline(always)]
+    fn haze(&self) -> Option<&Haze> {
+        None
+    }
+}
+
+/// A medium that is sampled at one position at a time.
+pub(in super::super) trait Pointwise: Sync {
     /// What is constant along a ray.
     type Aim: Default;
 
@@ -32,6 +61,42 @@ pub(in super::super) trait Medium: Sync {
     }
 }
 
+/// A medium, one sample after the other.
+pub(in super::super) struct OneByOne<'a, M>(pub(in super::super) &'a M);
+
+impl<M: Pointwise> Medium for OneByOne<'_, M> {
+    type Aim = M::Aim;
+    const BY_LANES: bool = false;
+
+    fn aim(&self, direction: DVec3, aim: &mut M::Aim) {
+        self.0.aim(direction, aim);
+    }
+
+    #[inline(always)]
+    fn run<L: Lanes>(&self, aim: &M::Aim, batch: &Batch<'_>, distance_mm: impl Fn(usize) -> f64) -> Option<Run> {
+        let mut run = EMPTY;
+        let mut any = false;
+        for k in 0..batch.samples {
+            let sample = self.0.sample(aim, batch.position(k), distance_mm(k));
+            any |= sample != [0.0; 4];
+            for c in 0..4 {
+                run[c][k] = sample[c];
+            }
+        }
+        any.then_some(run)
+    }
+
+    #[inline(always)]
+    fn space(&self) -> Rgbs<f32> {
+        self.0.space()
+    }
+
+    #[inline(always)]
+    fn haze(&self) -> Option<&Haze> {
+        self.0.haze()
+    }
+}
+
 /// A scalar field, classified and shaded at each sample.
 pub(in super::super) struct Classified<'a, V, K, C, S> {
     pub(in super::super) field: Trilinear<'a, V, K>,
@@ -42,7 +107,7 @@ pub(in super::super) struct Classified<'a, V, K, C, S> {
     pub(in super::super) shader: &'a S,
 }
 
-impl<V: Voxel, K: Spacing, C: ByPlace, S: Shader> Medium for Classified<'_, V, K, C, S> {
+impl<V: Voxel, K: Spacing, C: ByPlace, S: Shader> Pointwise for Classified<'_, V, K, C, S> {
     type Aim = S::Aim;
 
     fn aim(&self, direction: DVec3, aim: &mut S::Aim) {

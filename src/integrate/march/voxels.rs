@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec4};
 
-use super::medium::Medium;
+use super::medium::Pointwise;
 use crate::classify::Rgbs;
 use crate::error::Result;
 use crate::field::{Corners, Position};
@@ -30,7 +30,7 @@ impl<T: Texels<f32>> AtVoxels<T> {
     }
 }
 
-impl<T: Texels<f32>> Medium for AtVoxels<T> {
+impl<T: Texels<f32>> Pointwise for AtVoxels<T> {
     type Aim = ();
 
     fn aim(&self, _: DVec3, (): &mut ()) {}

@@ -321,7 +321,7 @@ impl<L: Lanes> Group<L> {
             self.cell[a].compress(passes).store(&mut passed.cell[a][at..]);
         }
         let [i, j, k] = self.cell;
-        let base = i + j.times(self.strides[0]) + k.times(self.strides[1]);
+        let base = i + j * self.strides[0] + k * self.strides[1];
         base.compress(passes).store(&mut passed.base[at..]);
         self.seat.compress(passes).store(&mut passed.seat[at..]);
         L::from_doubles(to_mm - self.at_mm).compress(passes).store(&mut passed.length_mm[at..]);
