@@ -13,8 +13,9 @@ use crate::simd::{Doubles, Ints, Lanes, Mask};
 /// Rays in flight at a time: as many as the widest register has lanes.
 pub(super) const RAYS: usize = 16;
 
-/// Steps of a ray in a round: few, since what lies behind an opaque cell is looked at in vain.
-pub(super) const STEPS: usize = 24;
+/// Steps of a ray in a round: as many as there is room for if each comes to a cell, so that no ray's rounds depend on the rays
+/// beside it, and few, since what lies behind an opaque cell is looked at in vain.
+pub(super) const STEPS: usize = CELLS / RAYS;
 
 /// Rays inside a volume, one per seat.
 #[derive(Debug)]
@@ -157,13 +158,10 @@ impl Walks {
     pub(super) fn pass<L: Lanes>(&mut self, occupancy: &Occupancy, passed: &mut Passed) {
         passed.count = 0;
         self.settled_mm = self.at_mm;
-        // Every group of seats gets its share of the room.
-        let share = CELLS / (RAYS / L::LANES);
         for first in (0..RAYS).step_by(L::LANES) {
-            let room = passed.count + share;
             let mut group = Group::<L>::load(self, first);
             for _ in 0..STEPS {
-                if passed.count + L::LANES > room || !group.step(occupancy, passed) {
+                if !group.step(occupancy, passed) {
                     break;
                 }
             }
