@@ -18,7 +18,7 @@ impl Power {
     pub fn new(exponent: f32) -> Option<Self> {
         let sixteenths = 16.0 * exponent;
         let fits = (0.0..=Power::MOST).contains(&exponent) && sixteenths.fract() == 0.0;
-        fits.then(|| Power { whole: exponent as u32, sixteenths: sixteenths as u32 % 16 })
+        fits.then_some(Power { whole: exponent as u32, sixteenths: sixteenths as u32 % 16 })
     }
 
     /// `x^y` for x from 0 to 1. Relative error at most `(y + 4) 2⁻²⁴` (asserted below) where the result is a normal number.

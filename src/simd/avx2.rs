@@ -59,7 +59,7 @@ const COMPRESSED: [[i32; 8]; 256] = {
         let (mut lane, mut at) = (0, 0);
         while lane < 8 {
             if bits >> lane & 1 == 1 {
-                all[bits][at] = lane as i32;
+                all[bits][at] = lane;
                 at += 1;
             }
             lane += 1;

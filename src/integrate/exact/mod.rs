@@ -5,7 +5,8 @@
 //! (`medium`), optical depth is exact, and the emitted light has a proven error (`piece`). Pieces are halved until the
 //! ray keeps within its `budget`. Where extinction and emission are given at the voxels (`voxels`) they are cubics
 //! themselves, and nothing is cut. This scalar kernel, in f64, is the twin of every faster one. Scenes with effects of light
-//! (`atmosphere`) or a mask (`masked`) are integrated in f64 alone.
+//! (`atmosphere`) or a mask (`masked`) are integrated in f64 alone; others in f32, in registers (`stream`) where the lattice is even
+//! and the lights are few.
 
 mod atmosphere;
 mod budget;

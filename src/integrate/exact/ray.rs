@@ -257,8 +257,9 @@ impl Front {
         let t = self.transmittance;
         let next = t - t * f64::from(absorbed);
         let error = t * f64::from(error);
-        // A NaN is refused, too.
-        if !(error <= self.budget.left(next, fraction)) {
+        let fits = error <= self.budget.left(next, fraction);
+        // Nor does NaN.
+        if !fits {
             return false;
         }
         for (sum, x) in self.radiance.iter_mut().zip(radiance) {

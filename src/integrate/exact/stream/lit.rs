@@ -210,7 +210,7 @@ impl<L: Lanes> Sum<L> {
             }
             self.total.error += t * piece.error;
             self.total.absorbed += t * piece.absorbed;
-            self.transmittance = self.transmittance - t * piece.absorbed;
+            self.transmittance -= t * piece.absorbed;
             self.pieces += L::select(under_way, L::ONE, L::ZERO);
             from = L::select(counts, to, from);
             // The error falls with the cube of the length, what is allowed with the length. The next piece probably fares like
