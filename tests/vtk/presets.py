@@ -85,7 +85,7 @@ class Comparison:
         self.scene.write_text(preset.pipeline(volume, zoom))
         self.exported = folder / f"{preset.file}.vtk"
         pellucid.run("export-vtk", self.scene, "-o", self.exported)
-        script, given = SCRIPT.read_text(), "    transfer_function(appearance, value_range)\n"
+        script, given = SCRIPT.read_text(), "    transfer_function(appearance, value_range, step_mm)\n"
         assert script.count(given) == 1, "where the script gives VTK its functions"
         replaced = script.replace(given, "    __import__('original').give(appearance, value_range)\n")
         (self.exported / "render.py").write_text(replaced)

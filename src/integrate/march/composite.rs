@@ -83,6 +83,17 @@ impl Light {
         self.previous = Some([0.0; 4]);
     }
 
+    /// The first sample of a batch that a ray does not come to, having stopped where its transmittance fell below the limit; given
+    /// the opacity before each.
+    #[inline(always)]
+    fn end(&self, before: &[f32; SAMPLES]) -> usize {
+        if self.stop_below <= NOTHING_LEFT {
+            return SAMPLES;
+        }
+        let is_past = |&k: &usize| self.transmittance * (1.0 - f64::from(before[k])) < self.stop_below;
+        (1..SAMPLES).find(is_past).unwrap_or(SAMPLES)
+    }
+
     /// True when a ray need not go on.
     #[inline(always)]
     pub(super) fn is_spent(&self) -> bool {
@@ -154,12 +165,19 @@ fn fold_batch<L: Lanes, R: Rule, D: Direction, K: Coloring, E: Measure>(
             (L::load(&means[c][at..]) * weight).store(&mut added[c][at..]);
         }
     }
-    let (before, opacity) = L::accumulated(&opacities);
+    let (before, mut opacity) = L::accumulated(&opacities);
+    let end = light.end(&before);
+    if end < SAMPLES {
+        opacity = before[end];
+    }
     for at in (0..SAMPLES).step_by(L::LANES) {
         let (share, own) = (L::ONE - L::load(&before[at..]), L::load(&opacities[at..]));
         for channel in &mut added {
             K::contribution(L::load(&channel[at..]), own, share).store(&mut channel[at..]);
         }
+    }
+    for channel in &mut added {
+        channel[end..].fill(0.0);
     }
     let [red, green, blue] = &added;
     let added = [f64::from(L::sum(red)), f64::from(L::sum(green)), f64::from(L::sum(blue))];
