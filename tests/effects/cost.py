@@ -75,8 +75,8 @@ one thread, pictures of {SIZE} × {SIZE} pixels of the synthetic head, {SMALL_HE
 what a picture takes beyond one of a single pixel, the *whole run* that and what both have: starting, reading, planning, and what
 is set up once. A row holds if pictures are the same to the bit and neither ratio is off by {LIMIT:.0%} (below: more by {LIMIT:.0%}). A mask
 is read even if all its labels turn out to be shown, so that a wrong one is refused: its row's whole run has the label volume in
-it, its rendering nothing. The second table is of programs from before kernels ran in registers (`--as-of`), so that it shows what
-the effects cost and nothing else: what registers save would hide it.
+it, its rendering nothing. Most kernels have moved to registers since there were no effects; what that saves is in the second table,
+too, but for values and surfaces, which are computed as they were.
 """.strip().splitlines()
 
 
@@ -189,8 +189,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("pellucid")
     parser.add_argument("--before", metavar="OLDER", help="a program from before the effects")
-    parser.add_argument("--as-of", metavar="PROGRAM", help="a program to hold against OLDER instead: from before kernels changed "
-                        "for other reasons than effects")
     parser.add_argument("--only", nargs="*", metavar="EFFECT", help="names of effects; all by default")
     parser.add_argument("--out", metavar="FILE", help="write the tables to a file too")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="pictures at once; all cores by default")
@@ -200,7 +198,7 @@ def main():
         of_effects, holds = effects_table(Run(arguments.pellucid, small), arguments.only, arguments.jobs)
         lines += of_effects
         if arguments.before:
-            programs = Run(arguments.as_of or arguments.pellucid, now), Run(arguments.before, then)
+            programs = Run(arguments.pellucid, now), Run(arguments.before, then)
             of_plain, plain_holds = before_table(*programs, arguments.jobs)
             lines += ["", *of_plain]
             holds &= plain_holds

@@ -82,25 +82,30 @@ pub(super) fn crossings<V: Voxel, P: Into<Passed>>(
     let levels: Vec<f64> = levels.iter().map(|level| sign * level).collect();
     let mut inside: Vec<Option<bool>> = vec![None; levels.len()];
     let mut found: Vec<(f64, usize)> = Vec::new();
+    // From the highest level that a ray is inside to below the lowest that it is outside, nothing changes.
+    const UNKNOWN: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut quiet = UNKNOWN;
     for passed in passed {
         let Passed::Shown(segment) = passed.into() else {
             inside.fill(None);
+            quiet = UNKNOWN;
             continue;
         };
         let corners = lattice.corners::<f64>(segment.cell).map(|v| sign * v);
         let [low, high] = range(&corners);
-        let settled = |(level, state): (&f64, &Option<bool>)| match state {
-            Some(true) => low >= *level,
-            Some(false) => high < *level,
-            None => false,
-        };
-        if levels.iter().zip(&inside).all(settled) {
+        if low >= quiet[0] && high < quiet[1] {
             continue;
         }
         let cubic = along(&corners, &segment);
         found.clear();
+        quiet = [f64::NEG_INFINITY, f64::INFINITY];
         for (n, &level) in levels.iter().enumerate() {
             flips(&cubic, level, &mut inside[n], |u| found.push((u, n)));
+            if inside[n] == Some(true) {
+                quiet[0] = quiet[0].max(level);
+            } else {
+                quiet[1] = quiet[1].min(level);
+            }
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         if found.is_empty() {
