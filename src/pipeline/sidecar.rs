@@ -149,7 +149,7 @@ impl Sidecar {
                 serde_json::json!(spec.pipeline),
                 &[&["volume", "source"], &["effects", "mask", "source"], &["output"]],
             ),
-            plan: without(plan::explain_json(plan), &[&["output", "path"]]),
+            plan: without(plan::plan_json(plan), &[&["output", "path"]]),
             volume: VolumeRecord::from(&scan.volume),
             labels: made.labels,
             picture: PictureRecord::new(&plan.output.path, plan.scene.camera.size(), made.pixels_sha256),

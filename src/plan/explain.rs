@@ -139,6 +139,13 @@ fn vector(v: [f64; 3], digits: usize) -> String {
 
 /// The same as JSON, with all numbers in full.
 pub fn explain_json(plan: &Plan) -> Value {
+    let mut json = plan_json(plan);
+    json["work"] = json!(plan.work());
+    json
+}
+
+/// The same without an estimate of the work, for those who know it or need not: to estimate it, rays are looked at.
+pub fn plan_json(plan: &Plan) -> Value {
     let camera = &plan.scene.camera;
     let projection = match camera.projection() {
         Projection::Perspective { fov_degrees } => json!({ "perspective": { "fov_degrees": fov_degrees } }),
@@ -157,7 +164,6 @@ pub fn explain_json(plan: &Plan) -> Value {
         "stages": plan.stages,
         "memory_bytes": plan.memory_bytes(),
         "memory_peak_while": plan.peak().0,
-        "work": plan.work(),
         "colors": plan.colors.map(|RgbaEncoding { opacity_length_mm, color }| json!({
             "opacity_length_mm": opacity_length_mm,
             "encoding": match color {

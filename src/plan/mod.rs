@@ -31,7 +31,7 @@ pub use classification::{Classification, CleanStep, Tissue};
 pub use crop::Crop;
 use effects::{Resolved, Surroundings};
 pub use exact_kernel::{MOST_LIGHTS, shades_in_registers};
-pub use explain::{explain, explain_json};
+pub use explain::{explain, explain_json, plan_json};
 pub use integrator::Chosen;
 pub use layers::{Layer, preset_terms};
 pub use mask::LabelClasses;

@@ -76,7 +76,8 @@ what a picture takes beyond one of a single pixel, the *whole run* that and what
 is set up once. A row holds if pictures are the same to the bit and neither ratio is off by {LIMIT:.0%} (below: more by {LIMIT:.0%}). A mask
 is read even if all its labels turn out to be shown, so that a wrong one is refused: its row's whole run has the label volume in
 it, its rendering nothing. Most kernels have moved to registers since there were no effects; what that saves is in the second table,
-too, but for values and surfaces, which are computed as they were.
+too, but for values and surfaces, which are computed as they were; and it made other roundings, so that pictures are not always the
+same to the bit.
 """.strip().splitlines()
 
 
@@ -145,7 +146,8 @@ def before_row(run, before, name, function, effects, method):
     # What takes less than it did is welcome.
     holds = [ratio < 1 + LIMIT for ratio in (rendering, whole)]
     counts = [f"{count / 1e6:.1f}" for count in (now, then)]
-    return [name, word(same), *counts, number(rendering, holds[0]), number(whole, holds[1])], same and all(holds)
+    picture = "to the bit" if same else "to rounding"
+    return [name, picture, *counts, number(rendering, holds[0]), number(whole, holds[1])], all(holds)
 
 
 def within(ratio):

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::frame::Frame;
 use crate::error::{Error, Fault, Result};
-use crate::plan::{Crop, Plan, explain_json};
+use crate::plan::{Crop, Plan, plan_json};
 use crate::scene::{Background, ClassifyAt, HalfSpace, Light, Model, Projection, Scene, Shading, ValueOf};
 use crate::volume::Volume;
 
@@ -54,7 +54,7 @@ pub(super) fn json(volume: &Volume, plan: &Plan, frame: &Frame, step_mm: f64, bl
         },
         "shading": scene.shading.as_ref().map(shading),
         "notes": notes(plan),
-        "plan": explain_json(plan)
+        "plan": plan_json(plan)
     }))
 }
 
