@@ -121,7 +121,7 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
             if !open.any() {
                 break;
             }
-            let mut next: [Next<L>; F] = each(
+            let next: [Next<L>; F] = each(
                 #[inline(always)]
                 |f| runs[f].next(function.axis(f), from),
             );
@@ -129,8 +129,10 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
             for n in next.iter().skip(1) {
                 to = to.min(n.to);
             }
+            let mut turns = [next[0]; LIGHTS];
             for n in 0..lighting.lights() {
-                to = to.min(sides[n].next(&lighting.side, from).to);
+                turns[n] = sides[n].next(&lighting.side, from);
+                to = to.min(turns[n].to);
             }
             let mut interval = [L::Ints::splat(0); F];
             for f in 0..F {
@@ -140,11 +142,10 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
             misplaced = misplaced.or(stuck);
             for f in 0..F {
                 misplaced = misplaced.or(open.and(runs[f].is_misplaced(function.axis(f), &next[f], to, harm)));
-                runs[f].advance(&mut next[f], to);
+                runs[f].advance(&next[f], to);
             }
             for n in 0..lighting.lights() {
-                let mut next = sides[n].next(&lighting.side, from);
-                sides[n].advance(&mut next, to);
+                sides[n].advance(&turns[n], to);
             }
             from = to;
         }

@@ -57,7 +57,7 @@ pub(super) fn cut<L: Lanes, const F: usize>(
             if !open.any() {
                 break;
             }
-            let mut next: [Next<L>; F] = each(
+            let next: [Next<L>; F] = each(
                 #[inline(always)]
                 |f| runs[f].next(function.axis(f), from),
             );
@@ -77,11 +77,11 @@ pub(super) fn cut<L: Lanes, const F: usize>(
             }
             total.error += transmittance * piece.error;
             total.absorbed += transmittance * piece.absorbed;
-            transmittance = transmittance - transmittance * piece.absorbed;
+            transmittance -= transmittance * piece.absorbed;
             pieces += L::select(open, L::ONE, L::ZERO);
             for f in 0..F {
                 misplaced = misplaced.or(open.and(runs[f].is_misplaced(function.axis(f), &next[f], to, harm)));
-                runs[f].advance(&mut next[f], to);
+                runs[f].advance(&next[f], to);
             }
             from = to;
         }
@@ -202,7 +202,7 @@ impl<L: Lanes> Run<L> {
     }
 
     #[inline(always)]
-    pub(super) fn advance(&mut self, next: &mut Next<L>, to: L) {
+    pub(super) fn advance(&mut self, next: &Next<L>, to: L) {
         let here = next.to.le(to);
         let crossed = here.and(next.crosses);
         let (up, down) = (self.interval + L::Ints::splat(1), self.interval - L::Ints::splat(1));
