@@ -25,7 +25,7 @@ fn clipped(scene: Scene, half_spaces: Vec<HalfSpace>) -> Scene {
 }
 
 fn exact(tolerance: f64) -> Method {
-    Method::Exact(Exact { tolerance })
+    Method::Exact(Exact::within(tolerance))
 }
 
 fn pixels(volume: &Volume, scene: &Scene, method: &Method) -> Vec<[f32; 4]> {

@@ -46,7 +46,7 @@ fn assert_everyone_sees(
     what: &str,
 ) {
     let oracle = Oracle::new(volume, scene).pixel(0, 0);
-    let exact = pixel(volume, scene, Method::Exact(pellucid::plan::Exact { tolerance: 1e-6 }));
+    let exact = pixel(volume, scene, Method::Exact(pellucid::plan::Exact::within(1e-6)));
     let marched = pixel(volume, scene, march(step_mm));
     for (name, found, allowed) in
         [("oracle", oracle, allowed), ("exact", exact, allowed + 2e-7), ("march", marched, of_march)]

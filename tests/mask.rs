@@ -38,7 +38,7 @@ fn blobs(volume: Volume, count: u64, seed: u64) -> Volume {
 }
 
 fn exact(tolerance: f64) -> Method {
-    Method::Exact(Exact { tolerance })
+    Method::Exact(Exact::within(tolerance))
 }
 
 fn pixels(volume: &Volume, scene: &Scene, method: &Method) -> Vec<[f32; 4]> {

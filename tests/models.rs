@@ -153,7 +153,7 @@ fn an_opaque_sphere_covers_its_disc() {
     scene.camera =
         pellucid::scene::Camera::look_at(eye, volume.grid().center_mm(), DVec3::Z, projection, [200, 200]).unwrap();
     scene.background = Background::Transparent;
-    let rendered = render(&volume, &scene, &Method::Exact(Exact { tolerance: 1e-3 }), &|_| {}).unwrap();
+    let rendered = render(&volume, &scene, &Method::Exact(Exact::within(1e-3)), &|_| {}).unwrap();
     let covered: f64 = rendered.image.pixels().iter().map(|p| f64::from(p[3])).sum::<f64>() * 0.04;
     let expected = std::f64::consts::PI * radius * radius;
     assert!((covered / expected - 1.0).abs() < 5e-3, "covered {covered} mm², expected {expected} mm²");

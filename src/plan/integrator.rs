@@ -1,12 +1,12 @@
 //! Settings of the integrators, with their defaults.
 
 use super::{
-    Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,
+    Bound, Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,
     VolumeInfo,
 };
 use crate::spec::{
-    ClassifyAtName, ColorsName, CompatibilityName, EmissionName, IntegrateSpec, JitterKindName, JitterSpec,
-    LatticeName, MarchSpec, OrderName, ReflectionName, RuleName, Spec, TableSpec,
+    BoundName, ClassifyAtName, ColorsName, CompatibilityName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName,
+    JitterSpec, LatticeName, MarchSpec, OrderName, ReflectionName, RuleName, Spec, TableSpec,
 };
 
 /// Why measurements chose a method.
@@ -20,18 +20,24 @@ pub struct Chosen {
 
 pub(super) fn resolve(spec: &Spec, volume: &VolumeInfo) -> Method {
     match &spec.pipeline.integrate {
-        None => Method::Exact(exact(None)),
-        Some(IntegrateSpec::Exact(settings)) => Method::Exact(exact(settings.tolerance)),
+        None => Method::Exact(exact(&ExactSpec::default())),
+        Some(IntegrateSpec::Exact(settings)) => Method::Exact(exact(settings)),
         Some(IntegrateSpec::March(settings)) => Method::March(march(spec, settings, volume)),
         Some(IntegrateSpec::Reference) => Method::Reference,
         // What keeps the tolerance for certain, until something has been measured.
-        Some(IntegrateSpec::Auto(settings)) => Method::Exact(exact(settings.tolerance)),
+        Some(IntegrateSpec::Auto(settings)) => {
+            Method::Exact(exact(&ExactSpec { tolerance: settings.tolerance, bound: None }))
+        }
     }
 }
 
 /// One step of an 8-bit channel, unless told.
-fn exact(tolerance: Option<f64>) -> Exact {
-    Exact { tolerance: tolerance.unwrap_or(1.0 / 255.0) }
+fn exact(spec: &ExactSpec) -> Exact {
+    let bound = match spec.bound {
+        None | Some(BoundName::Estimated) => Bound::Estimated,
+        Some(BoundName::Proven) => Bound::Proven,
+    };
+    Exact { tolerance: spec.tolerance.unwrap_or(1.0 / 255.0), bound }
 }
 
 fn march(pipeline: &Spec, spec: &MarchSpec, volume: &VolumeInfo) -> March {

@@ -19,6 +19,26 @@ pub enum Method {
 pub struct Exact {
     /// Largest error of a channel of a pixel (linear, premultiplied), above 0.
     pub tolerance: f64,
+    /// What is known of the error of what is shaded.
+    pub bound: Bound,
+}
+
+impl Exact {
+    /// The defaults for a tolerance.
+    pub fn within(tolerance: f64) -> Self {
+        Exact { tolerance, bound: Bound::default() }
+    }
+}
+
+/// What the bound on the error of a shaded pixel is. Of pixels that are not shaded it is proven in any case.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bound {
+    /// What shading may miss between the nodes of pieces is estimated, as a standard deviation, and counts four times.
+    #[default]
+    Estimated,
+    /// All of it is proven, which takes several times as long.
+    Proven,
 }
 
 /// Settings of the marching integrator.

@@ -36,7 +36,7 @@ pub use integrator::Chosen;
 pub use layers::{Layer, preset_terms};
 pub use mask::LabelClasses;
 pub use method::{
-    Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,
+    Bound, Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Reflection, SampleRule, Table,
 };
 pub use output::{Format, Output};
 pub use stack::StackPlan;

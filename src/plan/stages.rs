@@ -186,7 +186,9 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
 fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
     let shown = model::describe(&plan.scene.model, volume.quantity);
     let march = match (&plan.method, &shown) {
-        (Method::Exact(Exact { tolerance }), None) => return format!("each channel of a pixel within {tolerance:.3e}"),
+        (Method::Exact(Exact { tolerance, .. }), None) => {
+            return format!("each channel of a pixel within {tolerance:.3e}");
+        }
         (Method::Exact(_), Some(shown)) => return format!("{shown}; exact to rounding"),
         (Method::Reference, None) => return "every pixel by the oracle".to_owned(),
         (Method::Reference, Some(shown)) => return format!("{shown}; every pixel by the oracle"),

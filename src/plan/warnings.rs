@@ -60,7 +60,7 @@ pub(super) fn of(plan: &Plan, spec: &Spec, volume: &VolumeInfo) -> Vec<String> {
     }
     match plan.method {
         // Below this, rounding in f32 is most of the error.
-        Method::Exact(Exact { tolerance }) if tolerance < 1e-5 => {
+        Method::Exact(Exact { tolerance, .. }) if tolerance < 1e-5 => {
             warnings.push(format!(
                 "a tolerance of {tolerance:.1e} is near the rounding of f32; integrate: reference is exact in f64"
             ));

@@ -38,6 +38,19 @@ pub struct ExactSpec {
     /// Largest error of a channel of a pixel, linear and premultiplied; 1/255 by default, above 0 and below 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
+    /// What is known of the error of shaded pixels; `estimated` by default. It changes nothing where nothing is shaded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bound: Option<BoundName>,
+}
+
+/// What is known of an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BoundName {
+    /// What shading may miss between the nodes of pieces is estimated, with a margin of four standard deviations.
+    Estimated,
+    /// Every part of it is proven, which takes several times as long.
+    Proven,
 }
 
 /// Settings of the marching integrator.

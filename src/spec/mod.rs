@@ -40,8 +40,8 @@ pub use effects::{
     ScatteringSpec, ShadingSpec, ShadowsSpec, SurfaceSpec, TransportName, TrimSpec,
 };
 pub use integrate::{
-    AutoSpec, ColorsName, CompatibilityName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName, JitterSpec,
-    LatticeName, MarchSpec, OrderName, ReflectionName, RuleName, TableSpec,
+    AutoSpec, BoundName, ColorsName, CompatibilityName, EmissionName, ExactSpec, IntegrateSpec, JitterKindName,
+    JitterSpec, LatticeName, MarchSpec, OrderName, ReflectionName, RuleName, TableSpec,
 };
 pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset, parse_preset};
 pub use per_axis::PerAxis;

@@ -147,7 +147,7 @@ mod tests {
         let measured = candidates(&[[0.1, 0.2], [1.0, 0.01]]);
         for candidates in [&measured[..], &[]] {
             let chosen = choose(candidates, Target::Tolerance(1e-3)).expect("there is always the exact integrator");
-            assert_eq!(chosen.rung().method, Method::Exact(Exact { tolerance: 1e-3 }), "found {chosen:?}");
+            assert_eq!(chosen.rung().method, Method::Exact(Exact::within(1e-3)), "found {chosen:?}");
             assert!(matches!(chosen, Chosen::Proven(_)), "found {chosen:?}");
         }
     }

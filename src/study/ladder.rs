@@ -89,7 +89,7 @@ pub fn exact(tolerance: f64) -> Rung {
         family: Family::Exact,
         setting: format!("{{ exact: {{ tolerance: {written} }} }}"),
         fineness: written,
-        method: Method::Exact(Exact { tolerance }),
+        method: Method::Exact(Exact::within(tolerance)),
     }
 }
 

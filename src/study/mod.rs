@@ -172,7 +172,7 @@ fn maps(
     tolerance: f64,
 ) -> Result<Vec<ErrorMap>> {
     let Some((finest, truth)) = finest else { return Ok(Vec::new()) };
-    let Method::Exact(Exact { tolerance: against }) = finest.method else { return Ok(Vec::new()) };
+    let Method::Exact(Exact { tolerance: against, .. }) = finest.method else { return Ok(Vec::new()) };
     let marches = || measured.iter().filter(|m| m.rung.family == Family::Midpoint);
     let one_voxel = marches().nth(2).or(marches().next_back());
     let best = marches().min_by(|a, b| a.errors.largest.total_cmp(&b.errors.largest));

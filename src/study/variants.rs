@@ -8,7 +8,7 @@ use crate::volume::{Samples, Volume};
 
 /// The exact integrator.
 pub(super) fn exact(tolerance: f64) -> Method {
-    Method::Exact(Exact { tolerance })
+    Method::Exact(Exact::within(tolerance))
 }
 
 /// What a scene that is not shaded is shaded by for comparison: a headlight, with the shares that a pipeline has by default.

@@ -73,7 +73,7 @@ fn everything(scene: Scene) -> Scene {
 fn threads_and_the_order_of_tiles_do_not_matter() {
     let volume = blobs_i16();
     let scene = everything(scene(&volume, tissue_2d(), None));
-    for method in [Method::Exact(Exact { tolerance: 1e-3 }), Method::March(MARCH)] {
+    for method in [Method::Exact(Exact::within(1e-3)), Method::March(MARCH)] {
         let expected = render(&volume, &scene, &method, &|_| ()).expect("a picture");
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");

@@ -39,7 +39,7 @@ fn bits(rendered: &Rendered) -> Vec<u32> {
 #[test]
 fn levels_threads_and_orders_of_tiles_give_the_same_bits() {
     for (n, (volume, scene)) in scenes().iter().enumerate() {
-        let method = Method::Exact(Exact { tolerance: TOLERANCE });
+        let method = Method::Exact(Exact::within(TOLERANCE));
         let rendered = |schedule| render_scheduled(volume, scene, &method, schedule, &|_| ()).unwrap();
         let expected = rendered(Schedule { level: Level::Scalar, ..Schedule::default() });
         for level in levels() {

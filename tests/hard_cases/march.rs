@@ -90,7 +90,7 @@ fn threads_and_tile_order_change_no_bit() {
     let volume = rough_volume(14);
     let terms = vec![two_colors(), thin_shell()];
     let scene = scene_around(&volume, terms, Some(two_lights(true)), [53, 37]);
-    for method in [Method::March(settings(0.3)), Method::Exact(Exact { tolerance: 1e-3 })] {
+    for method in [Method::March(settings(0.3)), Method::Exact(Exact::within(1e-3))] {
         let picture = |threads: usize, shuffled_tiles: Option<u64>| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             let schedule = Schedule { shuffled_tiles, ..Schedule::default() };

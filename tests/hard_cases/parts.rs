@@ -44,7 +44,7 @@ fn greys_survive_encoding_and_half_of_white_is_188() {
     let half = scene(function_1d(&[(0.0, 0.1 * std::f64::consts::LN_2, [1.0; 3])]));
     let camera = camera_along(&ray([-4.0, 1.25, 0.6], [1.0, 0.0, 0.0]));
     let half = pellucid::Scene { camera, background: Background::Color([0.0; 3]), ..half };
-    for method in [Method::Exact(Exact { tolerance: 1e-4 }), Method::March(settings(0.1)), Method::Reference] {
+    for method in [Method::Exact(Exact::within(1e-4)), Method::March(settings(0.1)), Method::Reference] {
         let picture = render(&volume, &half, &method, &|_| ()).expect("a picture");
         assert_eq!(encode8(picture.image.pixel(0, 0)), [188, 188, 188, 255], "{method:?}");
     }

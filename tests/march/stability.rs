@@ -128,7 +128,7 @@ fn steps_that_would_take_for_ever_or_mean_nothing_are_refused() {
 fn other_methods_are_not_mistaken_for_marching() {
     let volume = blobs_i16();
     let scene = scene(&volume, tissue_1d(), None);
-    for method in [Method::Exact(Exact { tolerance: 1e-3 }), Method::Reference] {
+    for method in [Method::Exact(Exact::within(1e-3)), Method::Reference] {
         match render(&volume, &scene, &method, &|_| ()) {
             Ok(found) => assert!(!found.statistics.kernel.starts_with("march/"), "{}", found.statistics.kernel),
             Err(error) => assert_eq!(error.fault(), Fault::Unsupported),

@@ -26,9 +26,9 @@ const MARCH: March = March {
 
 #[test]
 fn settings_and_their_defaults() {
-    assert_eq!(plan("").method, Method::Exact(Exact { tolerance: 1.0 / 255.0 }), "by default");
+    assert_eq!(plan("").method, Method::Exact(Exact::within(1.0 / 255.0)), "by default");
     let cases = [
-        ("exact: { tolerance: 1/1000 }", Method::Exact(Exact { tolerance: 1e-3 })),
+        ("exact: { tolerance: 1/1000 }", Method::Exact(Exact::within(1e-3))),
         // Half of the smallest spacing, 1 mm.
         ("march: {}", Method::March(MARCH)),
         ("march: { step_voxels: 2 }", Method::March(March { step_mm: 2.0, ..MARCH })),

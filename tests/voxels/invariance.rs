@@ -22,7 +22,7 @@ fn scenes() -> Vec<(Volume, Scene)> {
 #[test]
 fn threads_and_tile_order_do_not_matter() {
     for (volume, scene) in scenes() {
-        for method in [Method::March(MARCH), Method::Exact(Exact { tolerance: 1e-3 })] {
+        for method in [Method::March(MARCH), Method::Exact(Exact::within(1e-3))] {
             let rendered = |schedule| render_scheduled(&volume, &scene, &method, schedule, &|_| ()).unwrap();
             let expected = rendered(Schedule::default());
             for threads in [1, 3] {
@@ -59,7 +59,7 @@ fn kernels_are_named_by_what_they_read() {
     let names: Vec<String> = scenes()
         .iter()
         .flat_map(|(volume, scene)| {
-            [Method::March(MARCH), Method::Exact(Exact { tolerance: 1e-2 })].map(|method| {
+            [Method::March(MARCH), Method::Exact(Exact::within(1e-2))].map(|method| {
                 render_scheduled(volume, scene, &method, Schedule::default(), &|_| ()).unwrap().statistics.kernel
             })
         })

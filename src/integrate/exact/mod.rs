@@ -32,7 +32,7 @@ use crate::classify::{Baked, BakedAlike, Classifier, OneD, TwoD, bake, bake_alik
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
-use crate::plan::Exact;
+use crate::plan::{Bound, Exact};
 use crate::scene::{ClassifyAt, Model, Ray, Scene, Shading};
 use crate::simd::{Level, Pairs};
 use crate::volume::{Samples, Volume};
@@ -52,7 +52,7 @@ use ray::{Brightest, Frame};
 use shade::{Lit, Unlit};
 use shown::Shown;
 use splits::Splits;
-use stream::{Fields, Function, Lighting, OfValue, OfValueAndMagnitude, Read, Stream, Voxels};
+use stream::{Estimate, Fields, Function, Lighting, OfValue, OfValueAndMagnitude, Read, Stream, Voxels};
 
 pub use ray::Traced;
 pub(super) use toward_light::{TowardLight, toward_light};
@@ -69,7 +69,11 @@ pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rende
             .found(tolerance.to_string())
             .expected("a finite number above 0, such as 1/255"));
     }
-    let tracer = tracer_at(frame.schedule.level, frame.volume, frame.scene, tolerance, Precision::Single);
+    let precision = match settings.bound {
+        Bound::Estimated => Precision::Estimated,
+        Bound::Proven => Precision::Single,
+    };
+    let tracer = tracer_at(frame.schedule.level, frame.volume, frame.scene, tolerance, precision);
     let (image, tally) = tiles::render_whole(frame, &|count, ray, put| {
         tracer.trace_all(count, ray, &mut |n, traced| {
             let Traced { radiance, transmittance, pieces, bound, .. } = traced;
@@ -85,9 +89,12 @@ pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rende
     Ok(Rendered { image, statistics })
 }
 
-/// In which arithmetic a kernel integrates its pieces; rays are set up and summed in f64 by both.
+/// In which arithmetic a kernel integrates its pieces, and what is known of their errors; rays are set up and summed in f64 by
+/// all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
+    /// f32 inside cells; what shading misses between the nodes of pieces is estimated, where there is a kernel for that.
+    Estimated,
     /// f32 inside cells.
     Single,
     /// f64 throughout: the twin.
@@ -174,7 +181,7 @@ fn for_samples<'a, V: Voxel + Pairs>(
         Model::Light | Model::Value(_) => {}
     }
     let tf = &scene.transfer_function;
-    let of = Of { volume, scene, tolerance, voxel: V::NAME, level };
+    let of = Of { volume, scene, tolerance, voxel: V::NAME, level, precision };
     if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
         let nearest = Nearest::new(classes, volume.grid());
         // In f64 alone, which keeps the number of kernels small.
@@ -192,7 +199,7 @@ fn for_samples<'a, V: Voxel + Pairs>(
     let double = bake::<f64>(tf, rescale);
     // Across an interval this narrow, the rounding of a value in f32 would cost more than rounding may.
     let too_narrow = double.narrowest() < SHARE_OF_ROUNDING * f64::from(f32::EPSILON) / tolerance;
-    let single = precision == Precision::Single && !too_narrow;
+    let single = precision != Precision::Double && !too_narrow;
     if single && let Some(voxels) = of.voxels(samples) {
         return match (double, bake::<f32>(tf, rescale)) {
             (Baked::OneD(double), Baked::OneD(other)) => {
@@ -225,6 +232,7 @@ struct Of<'a> {
     tolerance: f64,
     voxel: &'static str,
     level: Level,
+    precision: Precision,
 }
 
 impl<'a> Of<'a> {
@@ -258,14 +266,20 @@ impl<'a> Of<'a> {
         Read: Fields<F>,
     {
         let lighting = self.lighting();
-        let Of { volume, scene, tolerance, voxel, level } = self;
+        let Of { volume, scene, tolerance, voxel, level, precision } = self;
         let everything = [0.0, f32::MAX];
         let occupancy = voxels.occupancy(|range| !classifier.is_empty(range, everything));
+        let estimate = (lighting.is_some() && precision == Precision::Estimated).then(|| Estimate::within(tolerance));
+        let tolerance = estimate.map_or(tolerance, |estimate| estimate.proven);
         let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest: Brightest::of(scene) };
         let (grid, clip) = (volume.grid(), &scene.effects.clip);
-        let lit = if lighting.is_some() { "lit" } else { "unlit" };
+        let lit = match (&lighting, estimate) {
+            (None, _) => "unlit",
+            (Some(_), None) => "lit-proven",
+            (Some(_), Some(_)) => "lit",
+        };
         let name = format!("exact/{voxel}/{name}/{lit}/{level}");
-        Box::new(Stream { level, frame, grid, clip, voxels, occupancy, function, lighting, double, name })
+        Box::new(Stream { level, frame, grid, clip, voxels, occupancy, function, lighting, estimate, double, name })
     }
 
     /// The kernel for a medium: by its effects of light, its shading, or the optical depth alone. `single` is the same medium

@@ -9,6 +9,7 @@ use super::cells::{Domain, Segment};
 use super::medium::Medium;
 use super::shade::Shader;
 use super::splits::Splits;
+use super::stream::DEVIATIONS;
 
 /// A piece is not halved below this fraction of a segment; what it then costs is charged to the bound.
 const SMALLEST_PIECE: f64 = 1.0 / 65536.0;
@@ -25,7 +26,8 @@ pub struct Traced {
     pub transmittance: f64,
     /// What is absorbed of it, `1 − transmittance`, with all its digits however small it is.
     pub opacity: f64,
-    /// Proven bound on the error of a channel of `radiance` and of `transmittance`, rounding estimated.
+    /// Bound on the error of a channel of `radiance` and of `transmittance`, rounding estimated; proven, but for what
+    /// [`Precision::Estimated`](super::Precision::Estimated) estimates.
     pub bound: f64,
     /// Pieces integrated, those rejected included.
     pub pieces: u64,
@@ -225,13 +227,22 @@ pub(super) struct Front {
     transmittance: f64,
     opacity: f64,
     budget: Budget,
+    /// Of errors that are estimated.
+    variance: f64,
     pieces: u64,
 }
 
 impl Front {
     #[inline(always)]
     pub(super) fn new(tolerance: f64) -> Self {
-        Front { radiance: [0.0; 3], transmittance: 1.0, opacity: 0.0, budget: Budget::new(tolerance), pieces: 0 }
+        Front {
+            radiance: [0.0; 3],
+            transmittance: 1.0,
+            opacity: 0.0,
+            budget: Budget::new(tolerance),
+            variance: 0.0,
+            pieces: 0,
+        }
     }
 
     /// What is left of light from behind.
@@ -249,6 +260,12 @@ impl Front {
     #[inline(always)]
     pub(super) fn may_end(&self, rest: f64) -> bool {
         self.budget.may_end(rest)
+    }
+
+    /// Takes the estimated variance of a channel of what was passed last, seen with this transmittance.
+    #[inline(always)]
+    pub(super) fn vary(&mut self, transmittance: f64, variance: f64) {
+        self.variance += transmittance * transmittance * variance;
     }
 
     /// Passes a stretch that ends at a fraction of the ray and took some pieces, if the budget allows its error.
@@ -326,7 +343,7 @@ impl Front {
             radiance: self.radiance,
             transmittance: self.transmittance,
             opacity: self.opacity,
-            bound: self.budget.bound(rest),
+            bound: self.budget.bound(rest) + DEVIATIONS * self.variance.sqrt(),
             pieces: self.pieces,
         }
     }

@@ -39,7 +39,10 @@ pub(super) fn composite(
         let [r, g, b] = &results.radiance;
         let (absorbed, error) = (results.absorbed[slot], results.error[slot]);
         let pieces = results.pieces[slot] as u64;
-        if !ray.light.take([r[slot], g[slot], b[slot]], absorbed, error, exit_mm * walks.per_length_mm(seat), pieces) {
+        let transmittance = ray.light.transmittance();
+        if ray.light.take([r[slot], g[slot], b[slot]], absorbed, error, exit_mm * walks.per_length_mm(seat), pieces) {
+            ray.light.vary(transmittance, f64::from(results.variance[slot]));
+        } else {
             let [i, j, k] = &passed.cell;
             again(seat, ray.direction, &mut ray.light, [i[slot], j[slot], k[slot]]);
         }

@@ -6,7 +6,7 @@ use crate::integrate::exact::piece::{Integral, LinearFactors, Optics};
 use crate::math::bernstein::{Cubic, value};
 use crate::math::each;
 use crate::plan::{MOST_LIGHTS, shades_in_registers};
-use crate::scene::{Ray, Shading};
+use crate::scene::{Light, Ray, Shading};
 use crate::simd::{Lanes, Mask};
 
 /// Lights of a scene that lanes can have; scenes with more are integrated by the twin.
@@ -47,14 +47,18 @@ impl<L: Lanes> Finish<L> for Shaded<L> {
 #[derive(Debug, Clone)]
 pub(in crate::integrate::exact) struct Lighting {
     pub(super) shading: Shading,
-    ambient: f64,
-    diffuse: f64,
-    specular: f64,
-    shininess: u32,
-    two_sided: bool,
-    soft_square: f64,
-    largest_color: f64,
-    colors: Vec<[f32; 3]>,
+    pub(super) ambient: f64,
+    pub(super) diffuse: f64,
+    pub(super) specular: f64,
+    pub(super) shininess: u32,
+    pub(super) two_sided: bool,
+    pub(super) soft_square: f64,
+    pub(super) largest_color: f64,
+    pub(super) colors: Vec<[f32; 3]>,
+    /// Whether all lights are at the eye, where the half vector is the one towards them.
+    pub(super) are_at_the_eye: bool,
+    /// Bounds the factor of emission.
+    pub(super) largest_reflected: f64,
     /// Where `g·l` is 0 a light passes from one side to the other.
     pub(super) side: Axis,
 }
@@ -74,6 +78,8 @@ impl Lighting {
             soft_square: shading.soft_gradient_per_mm * shading.soft_gradient_per_mm,
             largest_color,
             colors: shading.directions(some_direction).map(|(_, _, color)| color.map(|c| c as f32)).collect(),
+            are_at_the_eye: shading.lights.iter().all(|light| matches!(light, Light::Headlight { .. })),
+            largest_reflected: shading.largest_factors().0,
             side: Axis::at(0.0),
         })
     }
@@ -114,7 +120,7 @@ pub(super) struct Lights<L> {
 }
 
 #[inline(always)]
-fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
+pub(super) fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -144,7 +150,7 @@ pub(super) fn along_light<L: Lanes>(g: &[Cubic<L>; 3], l: &[L; 3]) -> Cubic<L> {
 
 /// `x` to a whole power, by squaring.
 #[inline(always)]
-fn power<L: Lanes>(x: L, exponent: u32) -> L {
+pub(super) fn power<L: Lanes>(x: L, exponent: u32) -> L {
     let (mut result, mut square, mut rest) = (L::ONE, x, exponent);
     while rest > 0 {
         if rest & 1 == 1 {

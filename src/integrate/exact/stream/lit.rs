@@ -5,6 +5,7 @@ use super::function::Function;
 use super::light::{LIGHTS, Lighting, Lights, Seen, along_light};
 use super::pieces::{Next, Run, load_fields, put};
 use super::queue::{Passed, Results, Shown};
+use super::shaded::Estimate;
 use super::voxels::{Corners, Voxels};
 use super::walk::RAYS;
 use crate::field::Voxel;
@@ -26,6 +27,24 @@ pub(super) struct Allowance {
     pub(super) by_absorption: f32,
     pub(super) per_mm: [f32; RAYS],
     pub(super) per_cell: [f32; RAYS],
+    /// By seat, the variance of what a piece may miss, over what it absorbs.
+    pub(super) variance: [f32; RAYS],
+    /// By seat, the largest standard deviation of what a piece may miss.
+    pub(super) largest: [f32; RAYS],
+}
+
+impl Allowance {
+    pub(super) fn new(by_absorption: f64) -> Self {
+        let by_absorption = by_absorption as f32;
+        let none = [0.0; RAYS];
+        Allowance { by_absorption, per_mm: none, per_cell: none, variance: none, largest: none }
+    }
+
+    /// Shares out what may be missed behind this transmittance.
+    pub(super) fn estimate(&mut self, seat: usize, estimate: &Estimate, transmittance: f64) {
+        self.variance[seat] = (estimate.variance() / transmittance) as f32;
+        self.largest[seat] = (estimate.largest() / transmittance) as f32;
+    }
 }
 
 /// What is the same for all cells of a round.
@@ -150,7 +169,7 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
             from = to;
         }
         sum.total.error = L::select(misplaced, L::from_f64(f64::INFINITY), sum.total.error);
-        put(results, shown, first, &sum.total, sum.pieces);
+        put(results, shown, first, &sum.total, L::ZERO, sum.pieces);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::function::Function;
-use super::queue::{Passed, ROOM, Shown};
+use super::queue::{Passed, ROOM, Shown, Way};
 use super::voxels::{Corners, Voxels, magnitudes};
 use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, range, trilinear_along};
@@ -60,6 +60,7 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
     passed: &Passed,
     voxels: &Voxels<'_, V>,
     function: &impl Function<F>,
+    is_lit: bool,
     whole: &mut Shown<F>,
     cut: &mut Shown<F>,
 ) where
@@ -94,8 +95,8 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
             ),
             base,
         };
-        let fields =
-            <Read as Fields<F>>::along(voxels, &at, &corners, load(&passed.from, first), load(&passed.to, first));
+        let (from, to) = (load(&passed.from, first), load(&passed.to, first));
+        let fields = <Read as Fields<F>>::along(voxels, &at, &corners, from, to);
         let mut least = [nothing; F];
         let mut most = [nothing; F];
         let mut stays = <L::Mask as Mask>::ALL;
@@ -105,8 +106,12 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
         }
         let shows = may_show.and_not(function.is_empty::<L>(least, most));
         let length_mm = L::load(&passed.length_mm[first..]);
-        append(whole, shows.and(stays), slot, &fields, &least, length_mm);
-        append(cut, shows.and_not(stays), slot, &fields, &least, length_mm);
+        let way = is_lit.then(
+            #[inline(always)]
+            || Way { corners: at, seat: L::Ints::load(&passed.seat[first..]), from, to },
+        );
+        whole.append(shows.and(stays), slot, &fields, &least, length_mm, way.as_ref());
+        cut.append(shows.and_not(stays), slot, &fields, &least, length_mm, way.as_ref());
     }
 }
 
@@ -127,25 +132,4 @@ fn intervals<L: Lanes>(axis: &Axis, cubic: &Cubic<L>) -> [L::Ints; 2] {
         (low, high) = (low - rounding, high + rounding);
     }
     [axis.interval(low), axis.interval(high)]
-}
-
-#[inline(always)]
-fn append<L: Lanes, const F: usize>(
-    shown: &mut Shown<F>,
-    chosen: L::Mask,
-    slot: L::Ints,
-    fields: &[Cubic<L>; F],
-    interval: &[L::Ints; F],
-    length_mm: L,
-) {
-    let at = shown.count;
-    slot.compress(chosen).store(&mut shown.slot[at..]);
-    length_mm.compress(chosen).store(&mut shown.length_mm[at..]);
-    for f in 0..F {
-        interval[f].compress(chosen).store(&mut shown.interval[f][at..]);
-        for k in 0..4 {
-            fields[f][k].compress(chosen).store(&mut shown.fields[f][k][at..]);
-        }
-    }
-    shown.count += chosen.bits().count_ones() as usize;
 }

@@ -16,8 +16,10 @@ mod function;
 mod light;
 mod lit;
 mod look;
+mod nodes;
 mod pieces;
 mod queue;
+mod shaded;
 mod voxels;
 mod walk;
 
@@ -46,6 +48,7 @@ use walk::{RAYS, STEPS, Walks};
 pub(super) use function::{Function, OfValue, OfValueAndMagnitude};
 pub(super) use light::Lighting;
 pub(super) use look::{Fields, Read};
+pub(super) use shaded::{DEVIATIONS, Estimate};
 pub(super) use voxels::Voxels;
 
 /// The fast kernel for one transfer function of `F` fields.
@@ -58,6 +61,8 @@ pub(super) struct Stream<'a, V, T, D, const F: usize> {
     pub(super) occupancy: Occupancy,
     pub(super) function: T,
     pub(super) lighting: Option<Lighting>,
+    /// Shares of the tolerance, if what shading misses is estimated.
+    pub(super) estimate: Option<Estimate>,
     /// The twin in f64.
     pub(super) double: D,
     pub(super) name: String,
@@ -118,8 +123,8 @@ where
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
         let [by_absorption, per_ray] = Budget::of_pieces(stream.frame.tolerance);
-        let mut allowance =
-            Allowance { by_absorption: by_absorption as f32, per_mm: [0.0; RAYS], per_cell: [0.0; RAYS] };
+        let mut allowance = Allowance::new(by_absorption);
+        let mut parts = shaded::Parts::<F>::new();
         loop {
             for (seat, ray) in flying.iter_mut().enumerate() {
                 if let Some((number, traced)) = ray.as_ref().and_then(|ray| Some((ray.number, ray.traced?))) {
@@ -145,7 +150,7 @@ where
             }
             walks.pass::<L>(&stream.occupancy, &mut passed);
             results.clear();
-            look::<L, V, F>(&passed, &stream.voxels, &stream.function, &mut whole, &mut cut);
+            look::<L, V, F>(&passed, &stream.voxels, &stream.function, stream.lighting.is_some(), &mut whole, &mut cut);
             if let Some(lighting) = &stream.lighting {
                 for (seat, ray) in flying.iter().enumerate() {
                     let Some(ray) = ray else { continue };
@@ -154,11 +159,22 @@ where
                     allowance.per_mm[seat] = (per_ray / counts) as f32;
                     let left = ray.light.left(walks.done(seat)) / ray.light.transmittance();
                     allowance.per_cell[seat] = (left.max(0.0) / STEPS as f64) as f32;
+                    if let Some(estimate) = &stream.estimate {
+                        allowance.estimate(seat, estimate, ray.light.transmittance());
+                    }
                 }
                 let (passed, voxels, seen, allowance) = (&passed, &stream.voxels, &seen, &allowance);
                 let scenery = Scenery { passed, voxels, lighting, seen, allowance, harm_per_mm };
-                lit::<L, V, F>(&whole, &stream.function, &scenery, &mut results);
-                lit::<L, V, F>(&cut, &stream.function, &scenery, &mut results);
+                if stream.estimate.is_none() {
+                    lit::<L, V, F>(&whole, &stream.function, &scenery, &mut results);
+                    lit::<L, V, F>(&cut, &stream.function, &scenery, &mut results);
+                } else {
+                    let scenery = shaded::Scenery::<V> { voxels, lighting, seen, allowance, harm_per_mm };
+                    shaded::whole::<L, V, F>(&whole, &stream.function, &scenery, &mut parts, &mut results);
+                    shaded::cut::<L, V, F>(&cut, &stream.function, &scenery, &mut parts, &mut results);
+                    let shown = [&whole, &cut];
+                    shaded::halved::<L, V, F>(shown, &stream.function, &scenery, &mut parts, &mut results);
+                }
             } else {
                 pieces::whole::<L, F>(&whole, &stream.function, &mut results);
                 pieces::cut::<L, F>(&cut, &stream.function, harm_per_mm, &mut results);

@@ -27,7 +27,7 @@ pub(super) fn whole<L: Lanes, const F: usize>(shown: &Shown<F>, function: &impl 
             interval[f] = L::Ints::load(&shown.interval[f][first..]);
         }
         let integral = function.integrate(interval, &fields, L::load(&shown.length_mm[first..]), &AsItIs);
-        put(results, shown, first, &integral, L::ONE);
+        put(results, shown, first, &integral, L::ZERO, L::ONE);
     }
 }
 
@@ -61,10 +61,7 @@ pub(super) fn cut<L: Lanes, const F: usize>(
                 #[inline(always)]
                 |f| runs[f].next(function.axis(f), from),
             );
-            let mut to = next[0].to;
-            for n in next.iter().skip(1) {
-                to = to.min(n.to);
-            }
+            let to = nearest(&next);
             let mut interval = [L::Ints::splat(0); F];
             let mut parts = fields;
             for f in 0..F {
@@ -86,7 +83,7 @@ pub(super) fn cut<L: Lanes, const F: usize>(
             from = to;
         }
         total.error = L::select(misplaced, L::from_f64(f64::INFINITY), total.error);
-        put(results, shown, first, &total, pieces);
+        put(results, shown, first, &total, L::ZERO, pieces);
     }
 }
 
@@ -109,11 +106,12 @@ pub(super) fn put<L: Lanes, const F: usize>(
     shown: &Shown<F>,
     first: usize,
     integral: &Integral<L>,
+    variance: L,
     pieces: L,
 ) {
-    let mut lanes = [[0.0; 16]; 6];
+    let mut lanes = [[0.0; 16]; 7];
     let [r, g, b] = integral.radiance;
-    for (lane, x) in lanes.iter_mut().zip([r, g, b, integral.absorbed, integral.error, pieces]) {
+    for (lane, x) in lanes.iter_mut().zip([r, g, b, integral.absorbed, integral.error, pieces, variance]) {
         x.store(lane);
     }
     let slots = &shown.slot[first..shown.count.min(first + L::LANES)];
@@ -125,6 +123,7 @@ pub(super) fn put<L: Lanes, const F: usize>(
         results.absorbed[slot] = lanes[3][k];
         results.error[slot] = lanes[4][k];
         results.pieces[slot] = lanes[5][k];
+        results.variance[slot] = lanes[6][k];
         results.shown[slot / 64] |= 1 << (slot % 64);
     }
 }
@@ -151,6 +150,16 @@ pub(super) struct Next<L: Lanes> {
     rises: L::Mask,
     /// The end of the interval that it makes for.
     end: L::Ints,
+}
+
+/// The nearest of the places where a field's interval or direction changes.
+#[inline(always)]
+pub(super) fn nearest<L: Lanes, const F: usize>(next: &[Next<L>; F]) -> L {
+    let mut to = next[0].to;
+    for n in next.iter().skip(1) {
+        to = to.min(n.to);
+    }
+    to
 }
 
 impl<L: Lanes> Run<L> {

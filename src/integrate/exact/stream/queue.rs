@@ -1,5 +1,10 @@
 //! Cells between the steps of a round.
 
+use crate::math::bernstein::Cubic;
+use crate::simd::{Ints, Lanes, Mask};
+
+use super::voxels::Corners;
+
 /// Cells that a round works off together: enough to fill registers, few enough to stay in the first-level cache.
 pub(super) const CELLS: usize = 256;
 
@@ -51,6 +56,8 @@ pub(super) struct Shown<const F: usize> {
     pub(super) interval: [[i32; ROOM]; F],
     /// Length, mm.
     pub(super) length_mm: [f32; ROOM],
+    /// Where the cells are, in lit scenes.
+    pub(super) way: Ways<ROOM>,
 }
 
 impl<const F: usize> Shown<F> {
@@ -61,7 +68,101 @@ impl<const F: usize> Shown<F> {
             fields: [[[0.0; ROOM]; 4]; F],
             interval: [[0; ROOM]; F],
             length_mm: [0.0; ROOM],
+            way: Ways::new(),
         }
+    }
+
+    /// Appends the chosen ones of a register's cells.
+    #[inline(always)]
+    pub(super) fn append<L: Lanes>(
+        &mut self,
+        chosen: L::Mask,
+        slot: L::Ints,
+        fields: &[Cubic<L>; F],
+        interval: &[L::Ints; F],
+        length_mm: L,
+        way: Option<&Way<L>>,
+    ) {
+        let at = self.count;
+        if let Some(way) = way {
+            self.way.append(at, chosen, way);
+        }
+        slot.compress(chosen).store(&mut self.slot[at..]);
+        length_mm.compress(chosen).store(&mut self.length_mm[at..]);
+        for f in 0..F {
+            interval[f].compress(chosen).store(&mut self.interval[f][at..]);
+            for k in 0..4 {
+                fields[f][k].compress(chosen).store(&mut self.fields[f][k][at..]);
+            }
+        }
+        self.count += chosen.bits().count_ones() as usize;
+    }
+}
+
+/// The way of a ray through a cell.
+pub(super) struct Way<L: Lanes> {
+    pub(super) corners: Corners<L::Ints>,
+    /// Which ray, by its seat.
+    pub(super) seat: L::Ints,
+    /// Entry and exit, in `[0, 1]³` of the cell.
+    pub(super) from: [L; 3],
+    pub(super) to: [L; 3],
+}
+
+/// Ways through `N` cells.
+#[derive(Debug)]
+pub(super) struct Ways<const N: usize> {
+    base: [i32; N],
+    cell: [[i32; N]; 3],
+    seat: [i32; N],
+    from: [[f32; N]; 3],
+    to: [[f32; N]; 3],
+}
+
+impl<const N: usize> Ways<N> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Ways { base: [0; N], cell: [[0; N]; 3], seat: [0; N], from: [[0.0; N]; 3], to: [[0.0; N]; 3] }
+    }
+
+    #[inline(always)]
+    fn append<L: Lanes>(&mut self, at: usize, chosen: L::Mask, way: &Way<L>) {
+        way.corners.base.compress(chosen).store(&mut self.base[at..]);
+        way.seat.compress(chosen).store(&mut self.seat[at..]);
+        for a in 0..3 {
+            way.corners.cell[a].compress(chosen).store(&mut self.cell[a][at..]);
+            way.from[a].compress(chosen).store(&mut self.from[a][at..]);
+            way.to[a].compress(chosen).store(&mut self.to[a][at..]);
+        }
+    }
+
+    /// Copies one way of others to place `to`.
+    #[inline(always)]
+    pub(super) fn copy<const M: usize>(&mut self, to: usize, others: &Ways<M>, place: usize) {
+        self.base[to] = others.base[place];
+        self.seat[to] = others.seat[place];
+        for a in 0..3 {
+            self.cell[a][to] = others.cell[a][place];
+            self.from[a][to] = others.from[a][place];
+            self.to[a][to] = others.to[a][place];
+        }
+    }
+
+    /// As many as a register has lanes.
+    #[inline(always)]
+    pub(super) fn load<L: Lanes>(&self, first: usize) -> Way<L> {
+        let mut way = Way {
+            corners: Corners { cell: [L::Ints::splat(0); 3], base: L::Ints::load(&self.base[first..]) },
+            seat: L::Ints::load(&self.seat[first..]),
+            from: [L::ZERO; 3],
+            to: [L::ZERO; 3],
+        };
+        for a in 0..3 {
+            way.corners.cell[a] = L::Ints::load(&self.cell[a][first..]);
+            way.from[a] = L::load(&self.from[a][first..]);
+            way.to[a] = L::load(&self.to[a][first..]);
+        }
+        way
     }
 }
 
@@ -72,6 +173,8 @@ pub(super) struct Results {
     pub(super) absorbed: [f32; CELLS],
     /// Infinite where the cell must be integrated again.
     pub(super) error: [f32; CELLS],
+    /// Variance of what the nodes of pieces miss.
+    pub(super) variance: [f32; CELLS],
     /// Pieces integrated.
     pub(super) pieces: [f32; CELLS],
     /// Bit by bit, whether a cell has a result: something may show in it.
@@ -84,6 +187,7 @@ impl Results {
             radiance: [[0.0; CELLS]; 3],
             absorbed: [0.0; CELLS],
             error: [0.0; CELLS],
+            variance: [0.0; CELLS],
             pieces: [0.0; CELLS],
             shown: [0; CELLS / 64],
         }

@@ -5,7 +5,7 @@ use glam::DMat3;
 use crate::field::{BlockRanges, Trilinear, Voxel};
 use crate::integrate::occupancy::Occupancy;
 use crate::math::{Number, each};
-use crate::simd::{Ints, Lanes, Pairs};
+use crate::simd::{Ints, Lanes, Mask, Pairs};
 use crate::volume::{Rescale, Volume};
 
 /// Stored samples by voxel index, with what a gradient in HU/mm needs. Every axis has at least two voxels.
@@ -14,6 +14,8 @@ pub(in crate::integrate::exact) struct Voxels<'a, V> {
     samples: &'a [V],
     dims: [usize; 3],
     to_value_per_mm: DMat3,
+    /// Whether the axes are the patient's.
+    is_diagonal: bool,
 }
 
 /// The lower corners of cells, voxel indices.
@@ -30,7 +32,9 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
         let dims = volume.grid().dims();
         let fits = dims.iter().all(|&n| n >= 2) && samples.len() <= i32::MAX as usize && volume.slices().is_none();
         let Rescale { slope, .. } = volume.rescale();
-        fits.then(|| Voxels { samples, dims, to_value_per_mm: volume.grid().gradient_to_per_mm() * slope })
+        let to_value_per_mm = volume.grid().gradient_to_per_mm() * slope;
+        let is_diagonal = to_value_per_mm == DMat3::from_diagonal(to_value_per_mm.diagonal());
+        fits.then_some(Voxels { samples, dims, to_value_per_mm, is_diagonal })
     }
 
     /// Where something may show, given the ranges of stored values at which it does.
@@ -103,8 +107,54 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
                 }
             }
         }
+        self.per_mm(&per_index)
+    }
+
+    /// The same of cells none of which is at the border, samples at their corners included.
+    #[inline(always)]
+    pub(super) fn inner_gradients<L: Lanes>(&self, base: L::Ints) -> [[L; 8]; 3] {
+        let [nx, ny, _] = self.dims;
+        let half = L::from_f64(0.5);
+        let rows = [0, nx, nx * ny, nx + nx * ny];
+        let before = base - splat::<L>(1);
+        let mut corners = [L::ZERO; 8];
+        let mut per_index = [[L::ZERO; 8]; 3];
+        for row in 0..4 {
+            let [a, b, c, d] = V::quads::<L>(self.samples, before + splat::<L>(rows[row]));
+            (corners[2 * row], corners[2 * row + 1]) = (b, c);
+            (per_index[0][2 * row], per_index[0][2 * row + 1]) = ((c - a) * half, (d - b) * half);
+        }
+        for (axis, stride, along, next) in [(1, nx, nx * ny, 4), (2, nx * ny, nx, 2)] {
+            for side in 0..2 {
+                let line = base + splat::<L>(side * along);
+                let below = self.pair::<L>(line - splat::<L>(stride));
+                let above = self.pair::<L>(line + splat::<L>(2 * stride));
+                for x in 0..2 {
+                    let low = side * next + x;
+                    let high = low + (6 - next);
+                    per_index[axis][low] = (corners[high] - below[x]) * half;
+                    per_index[axis][high] = (above[x] - corners[low]) * half;
+                }
+            }
+        }
+        self.per_mm(&per_index)
+    }
+
+    /// Gradients in HU/mm from those in stored units per index.
+    #[inline(always)]
+    fn per_mm<L: Lanes>(&self, per_index: &[[L; 8]; 3]) -> [[L; 8]; 3] {
         let m = self.to_value_per_mm.to_cols_array_2d();
         let mut gradients = [[L::ZERO; 8]; 3];
+        // As in most scans.
+        if self.is_diagonal {
+            for a in 0..3 {
+                let scale = L::from_f64(m[a][a]);
+                for c in 0..8 {
+                    gradients[a][c] = scale * per_index[a][c];
+                }
+            }
+            return gradients;
+        }
         for (row, component) in gradients.iter_mut().enumerate() {
             *component = each(
                 #[inline(always)]
@@ -115,6 +165,17 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
             );
         }
         gradients
+    }
+
+    /// Whether all these cells have neighbours on all sides.
+    #[inline(always)]
+    pub(super) fn are_inner<L: Lanes>(&self, cell: &[L::Ints; 3], are_cells: L::Mask) -> bool {
+        let mut outer = are_cells.and_not(are_cells);
+        for (cell, n) in cell.iter().zip(self.dims) {
+            let last = cell.lt(splat::<L>(1)).or(L::Ints::splat(n as i32 - 3).lt(*cell));
+            outer = outer.or(last);
+        }
+        !are_cells.and(outer).any()
     }
 }
 

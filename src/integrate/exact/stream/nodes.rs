@@ -1,0 +1,270 @@
+//! Light at the nodes of a piece, and an estimate of what lies between them.
+//!
+//! The integral of a piece without shading, `∫ q e^{−τ}`, has a proven error. Gauss's rule with five nodes splits it: the share
+//! of node `i` is its weight times `q(u_i) e^{−τ(u_i)}`, over the sum of all. Each share is then shaded as the gradient at
+//! its node asks for, so that where the shading is the same along a piece nothing is lost. What is lost elsewhere grows with
+//! how far the normal turns between the nodes; it has either sign, and nothing to do with what is lost in other pieces. So
+//! standard deviations are estimated, and their squares add up along a ray.
+
+use super::light::{Finish, LIGHTS, Lighting, Lights, dot, power};
+use crate::integrate::exact::piece::{Integral, Optics};
+use crate::math::bernstein::{self, Cubic, sum};
+use crate::math::each;
+use crate::simd::{Lanes, Mask};
+
+/// Nodes of a piece.
+const NODES: usize = 5;
+
+/// Gauss's nodes in `[0, 1]`, and their weights.
+const PLACES: [f64; NODES] =
+    [0.046_910_077_030_668, 0.230_765_344_947_158_5, 0.5, 0.769_234_655_052_841_5, 0.953_089_922_969_332];
+const WEIGHTS: [f64; NODES] = [
+    0.118_463_442_528_094_54,
+    0.239_314_335_249_683_2,
+    0.284_444_444_444_444_4,
+    0.239_314_335_249_683_2,
+    0.118_463_442_528_094_54,
+];
+
+/// Of a medium with the optical depth `τ`, the rule finds the mean of the places that are seen less than `c τ⁴` of a piece too
+/// far, and never more than its first node lies behind the front; `c` holds the range of the nodes against that of the piece.
+const SHIFT_PER_DEPTH: f64 = 1e-6;
+const LARGEST_SHIFT: f64 = 0.06;
+
+/// Standard deviations of what the rule misses, over the turn of the normal from node to node, `Σ 1 − cos`, and over the cosines
+/// on both sides of a kink; measured on cubics with random coefficients (`tests/exact/nodes.rs`). Two-sided, they are up to half as
+/// large again.
+const OF_LAMBERT: f64 = 0.005;
+const OF_GLOSS: f64 = 0.002;
+const OF_SHININESS: f64 = 0.0005;
+const OF_KINK: f64 = 0.02;
+
+/// Powers of `u` with which a cubic is summed.
+pub(super) type Powers<L> = [L; 4];
+
+/// A cubic by powers of its parameter.
+#[inline(always)]
+pub(super) fn powers<L: Lanes>(b: &Cubic<L>) -> Powers<L> {
+    let three = L::from_f64(3.0);
+    let (d0, d1, d2) = (b[1] - b[0], b[2] - b[1], b[3] - b[2]);
+    [b[0], three * d0, three * (d1 - d0), (d2 - d1) - (d1 - d0)]
+}
+
+/// The light on a piece, at its nodes.
+#[derive(Clone, Copy)]
+pub(super) struct AtNodes<'l, L> {
+    lighting: &'l Lighting,
+    /// The diffuse term of each light without its colour, by node.
+    lambert: [[L; NODES]; LIGHTS],
+    /// The specular one.
+    gloss: [[L; NODES]; LIGHTS],
+    /// Standard deviation of what the nodes miss, for a piece that absorbs all light and for colours up to 1.
+    pub(super) deviation: L,
+}
+
+impl Lighting {
+    /// The light on the pieces `[from, to]` of cells along which this is the gradient, HU/mm.
+    #[inline(always)]
+    pub(super) fn at_nodes<L: Lanes>(
+        &self,
+        gradient: &[Powers<L>; 3],
+        lights: &Lights<L>,
+        [from, to]: [L; 2],
+    ) -> AtNodes<'_, L> {
+        let number = L::from_f64;
+        let length = to - from;
+        let none = [[L::ZERO; NODES]; LIGHTS];
+        let mut found = AtNodes { lighting: self, lambert: none, gloss: none, deviation: L::ZERO };
+        let (mut normals, mut fades) = ([[L::ZERO; 3]; NODES], [L::ONE; NODES]);
+        let (mut turn, mut vanished) = (L::ZERO, L::ZERO.lt(L::ZERO));
+        for i in 0..NODES {
+            let u = from + number(PLACES[i]) * length;
+            let g: [L; 3] = each(
+                #[inline(always)]
+                |a| {
+                    let [c0, c1, c2, c3] = gradient[a];
+                    ((c3 * u + c2) * u + c1) * u + c0
+                },
+            );
+            let square = dot(&g, &g);
+            let vanishes = square.le(L::ZERO);
+            // The normal is against the gradient.
+            let inverse = L::select(vanishes, L::ZERO, -(L::ONE / square.sqrt()));
+            normals[i] = [g[0] * inverse, g[1] * inverse, g[2] * inverse];
+            if self.soft_square != 0.0 {
+                fades[i] = L::select(vanishes, L::ZERO, square / (square + number(self.soft_square)));
+            }
+            if i > 0 {
+                // Where the gradient vanishes at both there is no normal to turn.
+                let by = L::ONE - dot(&normals[i - 1], &normals[i]);
+                turn += L::select(vanishes.and(vanished), L::ZERO, by);
+            }
+            vanished = vanishes;
+        }
+        let both = if self.two_sided { 1.5 } else { 1.0 };
+        let by_turn = OF_LAMBERT * self.diffuse + (OF_GLOSS + OF_SHININESS * f64::from(self.shininess)) * self.specular;
+        for (n, color) in self.colors.iter().enumerate().take(LIGHTS) {
+            let mut kink = L::ZERO;
+            let mut before = L::ZERO;
+            for i in 0..NODES {
+                let cosine = dot(&normals[i], &lights.towards[n]);
+                let shine = if self.are_at_the_eye { cosine } else { dot(&normals[i], &lights.half[n]) };
+                let (facing, shine) = if self.two_sided {
+                    (cosine.abs(), shine.abs())
+                } else {
+                    (cosine.max(L::ZERO), shine.max(L::ZERO))
+                };
+                found.lambert[n][i] = number(self.diffuse) * (fades[i] * facing);
+                if self.specular != 0.0 {
+                    let gloss = number(self.specular) * (fades[i] * power(shine.min(L::ONE), self.shininess));
+                    found.gloss[n][i] = L::select(L::ZERO.lt(facing), gloss, L::ZERO);
+                }
+                if i > 0 {
+                    // Between nodes on two sides of a light lies a kink.
+                    let changes = (before * cosine).lt(L::ZERO);
+                    kink += L::select(changes, (before - cosine).abs(), L::ZERO);
+                }
+                before = cosine;
+            }
+            let of_light = number(both * by_turn) * turn + number(both * OF_KINK * self.diffuse) * kink;
+            found.deviation += number(brightest(color)) * of_light;
+        }
+        found
+    }
+}
+
+fn brightest(color: &[f32; 3]) -> f64 {
+    f64::from(color[0].max(color[1]).max(color[2]))
+}
+
+impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
+    #[inline(always)]
+    fn finish<const N: usize, const M: usize>(&self, optics: &Optics<L, N>, length_mm: L) -> Integral<L> {
+        let number = L::from_f64;
+        let unlit = optics.integrate(length_mm);
+        let mut transmitted = [L::ONE; NODES];
+        for i in 0..NODES {
+            let mut depth = L::ZERO;
+            for k in 0..N {
+                depth += number(table::<N>().integrals[i][k]) * optics.extinction[k];
+            }
+            transmitted[i] = number(WEIGHTS[i]) * (L::ONE - (length_mm * depth).absorbed());
+        }
+        let absorbed = shares(&optics.extinction, &transmitted, unlit.absorbed);
+        let mut radiance = [L::ZERO; 3];
+        for c in 0..3 {
+            let emitted = shares(&optics.emission[c], &transmitted, unlit.radiance[c]);
+            radiance[c] = number(self.lighting.ambient) * unlit.radiance[c];
+            for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
+                radiance[c] += number(f64::from(color[c])) * dot_nodes(&emitted, &self.lambert[n]);
+            }
+        }
+        let brightest_unlit = unlit.radiance[0].max(unlit.radiance[1]).max(unlit.radiance[2]);
+        let mut drift = L::ZERO;
+        for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
+            if self.lighting.specular != 0.0 {
+                let gloss = dot_nodes(&absorbed, &self.gloss[n]);
+                for c in 0..3 {
+                    radiance[c] += number(f64::from(color[c])) * gloss;
+                }
+            }
+            let varies = brightest_unlit * range(&self.lambert[n]) + unlit.absorbed * range(&self.gloss[n]);
+            drift += number(brightest(color)) * varies;
+        }
+        // Where little gets through, the nodes lie behind what is seen.
+        let depth = length_mm * (number(1.0 / N as f64) * sum(&optics.extinction));
+        let square = depth * depth;
+        let shift = (number(SHIFT_PER_DEPTH) * square * square).min(number(LARGEST_SHIFT));
+        let largest = number(self.lighting.largest_reflected);
+        Integral { radiance, error: largest * unlit.error + shift * drift, ..unlit }
+    }
+}
+
+/// How much a factor differs between nodes.
+#[inline(always)]
+fn range<L: Lanes>(at: &[L; NODES]) -> L {
+    let [low, high] = bernstein::range(at);
+    high - low
+}
+
+#[inline(always)]
+fn dot_nodes<L: Lanes>(a: &[L; NODES], b: &[L; NODES]) -> L {
+    let mut sum = a[0] * b[0];
+    for i in 1..NODES {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+/// What is shared out to the nodes: by the values of a polynomial there, times what is transmitted.
+#[inline(always)]
+fn shares<L: Lanes, const N: usize>(polynomial: &[L; N], transmitted: &[L; NODES], all: L) -> [L; NODES] {
+    let mut found = [L::ZERO; NODES];
+    for i in 0..NODES {
+        for k in 0..N {
+            found[i] += L::from_f64(table::<N>().values[i][k]) * polynomial[k];
+        }
+        found[i] = transmitted[i] * found[i];
+    }
+    let total = sum(&found);
+    let scale = L::select(L::ZERO.lt(total), all / total, L::ZERO);
+    for share in &mut found {
+        *share = scale * *share;
+    }
+    found
+}
+
+/// Bernstein polynomials at the nodes, and their integrals up to the nodes.
+struct NodeTable<const N: usize> {
+    values: [[f64; N]; NODES],
+    integrals: [[f64; N]; NODES],
+}
+
+#[inline(always)]
+const fn table<const N: usize>() -> &'static NodeTable<N> {
+    const { &NodeTable::<N>::new() }
+}
+
+impl<const N: usize> NodeTable<N> {
+    const fn new() -> Self {
+        let mut found = NodeTable { values: [[0.0; N]; NODES], integrals: [[0.0; N]; NODES] };
+        let mut i = 0;
+        while i < NODES {
+            // Raised from degree to degree: B(k, n) = (1 − u) B(k, n−1) + u B(k−1, n−1).
+            let u = PLACES[i];
+            let mut b = [0.0; 16];
+            b[0] = 1.0;
+            let mut degree = 0;
+            while degree < N {
+                if degree == N - 1 {
+                    let mut k = 0;
+                    while k < N {
+                        found.values[i][k] = b[k];
+                        k += 1;
+                    }
+                }
+                let mut k = degree + 1;
+                while k > 0 {
+                    b[k] = (1.0 - u) * b[k] + u * b[k - 1];
+                    k -= 1;
+                }
+                b[0] *= 1.0 - u;
+                degree += 1;
+            }
+            // ∫₀^u B(k, n) = Σ_{j > k} B(j, n+1) / (n + 1).
+            let mut k = 0;
+            while k < N {
+                let mut sum = 0.0;
+                let mut j = k + 1;
+                while j <= N {
+                    sum += b[j];
+                    j += 1;
+                }
+                found.integrals[i][k] = sum / N as f64;
+                k += 1;
+            }
+            i += 1;
+        }
+        found
+    }
+}
