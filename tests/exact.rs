@@ -46,11 +46,13 @@ fn every_pixel_is_within_tolerance_and_bound() {
     ] {
         let scene = scene_around(&volume, terms, shading, [24, 24]);
         for tolerance in [1.0 / 255.0, 1e-3, 1e-4] {
-            for precision in [Precision::Double, Precision::Single] {
+            for precision in [Precision::Double, Precision::Single, Precision::Estimated] {
                 let (error, of_bound) = held_against_the_oracle(&volume, &scene, tolerance, precision);
                 assert!(error <= tolerance, "{name}, {precision:?}: error {error:e} over tolerance {tolerance:e}");
+                // What is estimated may be more.
+                let most = if precision == Precision::Estimated { 1.5 } else { 1.0 };
                 assert!(
-                    of_bound <= 1.0,
+                    of_bound <= most,
                     "{name}, {precision:?}, tolerance {tolerance:e}: error is {of_bound} x the bound"
                 );
                 assert!(

@@ -40,7 +40,7 @@ pub struct Rendered {
 pub struct Statistics {
     /// Places where the transfer function was evaluated, or pieces integrated.
     pub samples: u64,
-    /// Largest bound on the error of a channel of a pixel (linear, premultiplied), where the method proves one.
+    /// Largest bound on the error of a channel of a pixel (linear, premultiplied), where the method has one.
     pub error_bound: Option<f64>,
     /// Rays that met the volume, or haze.
     pub rays: u64,

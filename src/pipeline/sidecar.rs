@@ -13,7 +13,7 @@ use super::{Certificate, Clipped, StageTime, digest, measure};
 use crate::error::{Error, Fault, Result};
 use crate::integrate::Rendered;
 use crate::io::{Scan, whole_file};
-use crate::plan::{self, Method, Plan};
+use crate::plan::{self, Bound, Method, Plan};
 use crate::spec::Spec;
 use crate::study::Choice;
 use crate::volume::Volume;
@@ -120,8 +120,10 @@ pub struct MethodRecord {
     pub kernel: String,
     /// Error asked for.
     pub tolerance: Option<f64>,
-    /// Largest bound that the method proved while it rendered.
+    /// Largest bound on the error of a pixel.
     pub error_bound: Option<f64>,
+    /// Whether all of that bound is proven, or a part of it estimated.
+    pub bound: Option<Bound>,
     /// Places where the transfer function was evaluated, or pieces integrated.
     pub samples: u64,
     /// Rays that met the volume.
@@ -228,6 +230,7 @@ impl MethodRecord {
             kernel: statistics.kernel.clone(),
             tolerance: plan.tolerance(),
             error_bound: statistics.error_bound,
+            bound: plan.bound(),
             samples: statistics.samples,
             rays: statistics.rays,
         }

@@ -186,6 +186,14 @@ impl Plan {
         }
     }
 
+    /// What the bound on the error is, where there is one.
+    pub fn bound(&self) -> Option<Bound> {
+        let Method::Exact(exact) = self.method else { return None };
+        // Nodes are for registers, which macrocells are for too.
+        let has_nodes = self.demand.gradient && self.demand.macrocells;
+        Some(if has_nodes { exact.bound } else { Bound::Proven })
+    }
+
     /// How much there is to do, by looking at thousands of rays: for those who ask, as rendering does not.
     pub fn work(&self) -> Work {
         work::expected(&self.scene, &self.method, &self.grid)

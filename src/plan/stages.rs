@@ -7,7 +7,8 @@ use crate::volume::Grid;
 
 use super::model::{self, reads_transfer_function};
 use super::{
-    Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, Reflection, SampleRule, VolumeInfo,
+    Bound, Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, Reflection, SampleRule,
+    VolumeInfo,
 };
 use super::{clip, mask, voxels};
 
@@ -187,7 +188,11 @@ fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
     let shown = model::describe(&plan.scene.model, volume.quantity);
     let march = match (&plan.method, &shown) {
         (Method::Exact(Exact { tolerance, .. }), None) => {
-            return format!("each channel of a pixel within {tolerance:.3e}");
+            let bound = match plan.bound() {
+                Some(Bound::Estimated) => ", of which what shading misses is estimated",
+                _ => "",
+            };
+            return format!("each channel of a pixel within {tolerance:.3e}{bound}");
         }
         (Method::Exact(_), Some(shown)) => return format!("{shown}; exact to rounding"),
         (Method::Reference, None) => return "every pixel by the oracle".to_owned(),

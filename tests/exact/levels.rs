@@ -2,7 +2,7 @@
 
 use pellucid::integrate::exact::{Precision, tracer, tracer_at};
 use pellucid::integrate::{Rendered, Schedule, render_scheduled};
-use pellucid::plan::{Exact, Method};
+use pellucid::plan::{Bound, Exact, Method};
 use pellucid::scene::Scene;
 use pellucid::simd::Level;
 use pellucid::transfer::Term;
@@ -32,6 +32,16 @@ fn scenes() -> Vec<(Volume, Scene)> {
     ]
 }
 
+/// With nodes and without, where they are for something.
+fn bounds(scene: &Scene) -> impl Iterator<Item = Bound> {
+    let lit = scene.shading.is_some();
+    [Bound::Proven, Bound::Estimated].into_iter().filter(move |&bound| lit || bound == Bound::Proven)
+}
+
+fn precisions(scene: &Scene) -> impl Iterator<Item = Precision> {
+    bounds(scene).map(|bound| if bound == Bound::Proven { Precision::Single } else { Precision::Estimated })
+}
+
 fn bits(rendered: &Rendered) -> Vec<u32> {
     rendered.image.pixels().iter().flatten().map(|x| x.to_bits()).collect()
 }
@@ -39,22 +49,24 @@ fn bits(rendered: &Rendered) -> Vec<u32> {
 #[test]
 fn levels_threads_and_orders_of_tiles_give_the_same_bits() {
     for (n, (volume, scene)) in scenes().iter().enumerate() {
-        let method = Method::Exact(Exact::within(TOLERANCE));
-        let rendered = |schedule| render_scheduled(volume, scene, &method, schedule, &|_| ()).unwrap();
-        let expected = rendered(Schedule { level: Level::Scalar, ..Schedule::default() });
-        for level in levels() {
-            for (threads, shuffled_tiles) in [(1, None), (2, Some(3)), (3, Some(8))] {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                let schedule = Schedule { shuffled_tiles, level, ..Schedule::default() };
-                let found = pool.install(|| rendered(schedule));
-                let same = bits(&found) == bits(&expected);
-                assert!(
-                    same,
-                    "scene {n}: other bits by {level} on {threads} threads, tiles shuffled by {shuffled_tiles:?}"
-                );
-                assert_eq!(found.statistics.samples, expected.statistics.samples, "scene {n}, {level}");
-                assert_eq!(found.statistics.error_bound, expected.statistics.error_bound, "scene {n}, {level}");
-                assert!(found.statistics.kernel.ends_with(&format!("/{level}")), "{}", found.statistics.kernel);
+        for bound in bounds(scene) {
+            let method = Method::Exact(Exact { tolerance: TOLERANCE, bound });
+            let rendered = |schedule| render_scheduled(volume, scene, &method, schedule, &|_| ()).unwrap();
+            let expected = rendered(Schedule { level: Level::Scalar, ..Schedule::default() });
+            for level in levels() {
+                for (threads, shuffled_tiles) in [(1, None), (2, Some(3)), (3, Some(8))] {
+                    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                    let schedule = Schedule { shuffled_tiles, level, ..Schedule::default() };
+                    let found = pool.install(|| rendered(schedule));
+                    let same = bits(&found) == bits(&expected);
+                    assert!(
+                        same,
+                        "scene {n}, {bound:?}: other bits by {level} on {threads} threads, tiles shuffled by {shuffled_tiles:?}"
+                    );
+                    assert_eq!(found.statistics.samples, expected.statistics.samples, "scene {n}, {level}");
+                    assert_eq!(found.statistics.error_bound, expected.statistics.error_bound, "scene {n}, {level}");
+                    assert!(found.statistics.kernel.ends_with(&format!("/{level}")), "{}", found.statistics.kernel);
+                }
             }
         }
     }
@@ -63,16 +75,18 @@ fn levels_threads_and_orders_of_tiles_give_the_same_bits() {
 #[test]
 fn many_rays_at_once_are_each_as_if_alone() {
     for (n, (volume, scene)) in scenes().iter().enumerate() {
-        let tracer = tracer(volume, scene, TOLERANCE, Precision::Single);
-        let [width, height] = scene.camera.size();
-        let ray = |pixel: usize| scene.camera.pixel_ray(pixel % width, pixel / width);
-        let mut together = vec![None; width * height];
-        tracer.trace_all(width * height, &ray, &mut |pixel, traced| together[pixel] = Some(traced));
-        assert!(together.iter().any(Option::is_some), "scene {n}: no ray meets the volume");
-        for (pixel, together) in together.iter().enumerate() {
-            let light =
-                |traced: pellucid::integrate::exact::Traced| (traced.radiance, traced.transmittance, traced.bound);
-            assert_eq!(tracer.trace(&ray(pixel)).map(light), together.map(light), "scene {n}, pixel {pixel}");
+        for precision in precisions(scene) {
+            let tracer = tracer(volume, scene, TOLERANCE, precision);
+            let [width, height] = scene.camera.size();
+            let ray = |pixel: usize| scene.camera.pixel_ray(pixel % width, pixel / width);
+            let mut together = vec![None; width * height];
+            tracer.trace_all(width * height, &ray, &mut |pixel, traced| together[pixel] = Some(traced));
+            assert!(together.iter().any(Option::is_some), "scene {n}: no ray meets the volume");
+            for (pixel, together) in together.iter().enumerate() {
+                let light =
+                    |traced: pellucid::integrate::exact::Traced| (traced.radiance, traced.transmittance, traced.bound);
+                assert_eq!(tracer.trace(&ray(pixel)).map(light), together.map(light), "scene {n}, pixel {pixel}");
+            }
         }
     }
 }
@@ -81,8 +95,8 @@ fn many_rays_at_once_are_each_as_if_alone() {
 fn every_level_is_within_both_bounds_of_the_twin() {
     for (n, (volume, scene)) in scenes().iter().enumerate() {
         let twin = tracer(volume, scene, TOLERANCE, Precision::Double);
-        for level in levels() {
-            let fast = tracer_at(level, volume, scene, TOLERANCE, Precision::Single);
+        for (level, precision) in levels().flat_map(|level| precisions(scene).map(move |p| (level, p))) {
+            let fast = tracer_at(level, volume, scene, TOLERANCE, precision);
             let (mut met, mut changed) = (0, 0);
             for pixel in 0..scene.camera.size().iter().product() {
                 let width = scene.camera.size()[0];
@@ -95,7 +109,7 @@ fn every_level_is_within_both_bounds_of_the_twin() {
                 let apart = apart.max((found.transmittance - expected.transmittance).abs());
                 assert!(
                     apart <= found.bound + expected.bound && found.bound <= TOLERANCE,
-                    "scene {n}, {level}, pixel {pixel}: {apart:e} apart, bounds {:e} and {:e}",
+                    "scene {n}, {level}, {precision:?}, pixel {pixel}: {apart:e} apart, bounds {:e} and {:e}",
                     found.bound,
                     expected.bound
                 );
