@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Spacing, Trilinear, Voxel};
+use crate::simd::{Kernel, Lanes, Level};
 
 /// Base-2 logarithm of the cells per axis of a block of [`Macrocells`].
 pub(super) const LOG2_BLOCK_CELLS: u32 = 3;
@@ -35,9 +36,10 @@ impl<const LOG2: u32> BlockRanges<LOG2> {
         let blocks = Self::blocks_of(field.dims);
         let [across, down, _] = blocks;
         let mut ranges = vec![[0.0; 2]; blocks.iter().product()];
+        let level = Level::widest();
         ranges.par_chunks_mut(across * down).enumerate().for_each(|(k, slab)| {
             for (j, row) in slab.chunks_mut(across).enumerate() {
-                fill_row::<V, K, LOG2>(field, j, k, row);
+                level.run(Row::<V, K, LOG2> { field, at: [j, k], ranges: row });
             }
         });
         BlockRanges { blocks, ranges }
@@ -60,30 +62,65 @@ fn voxels_of<const LOG2: u32>(block: usize, n: usize) -> std::ops::RangeInclusiv
     first..=(first + (1 << LOG2)).min(n - 1)
 }
 
-/// Whole lines of voxels are reduced across the line first, which vectorises, and each block along the line last.
-fn fill_row<V: Voxel, K: Spacing, const LOG2: u32>(
-    field: &Trilinear<'_, V, K>,
-    j: usize,
-    k: usize,
-    row: &mut [[f32; 2]],
-) {
-    let [nx, ny, nz] = field.dims;
-    let first = field.voxels[nx * ((j << LOG2) + ny * (k << LOG2))..][..nx].to_vec();
-    let (mut low, mut high) = (first.clone(), first);
-    for z in voxels_of::<LOG2>(k, nz) {
-        for y in voxels_of::<LOG2>(j, ny) {
-            let line = &field.voxels[nx * (y + ny * z)..][..nx];
-            for ((&v, low), high) in line.iter().zip(&mut low).zip(&mut high) {
-                *low = if v < *low { v } else { *low };
-                *high = if v > *high { v } else { *high };
+/// A row of blocks along x, to be filled with their ranges.
+struct Row<'f, 'v, 'r, V, K: Spacing, const LOG2: u32> {
+    field: &'f Trilinear<'v, V, K>,
+    /// Its place among the rows.
+    at: [usize; 2],
+    ranges: &'r mut [[f32; 2]],
+}
+
+/// Whole lines of voxels are reduced across the line first, and along it in steps that double; loops over neighbours, which the
+/// compiler fills registers with.
+impl<V: Voxel, K: Spacing, const LOG2: u32> Kernel for Row<'_, '_, '_, V, K, LOG2> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Row { field, at: [j, k], ranges } = self;
+        let [nx, ny, nz] = field.dims;
+        let first = field.voxels[nx * ((j << LOG2) + ny * (k << LOG2))..][..nx].to_vec();
+        let (mut low, mut high) = (first.clone(), first);
+        for z in voxels_of::<LOG2>(k, nz) {
+            for y in voxels_of::<LOG2>(j, ny) {
+                let line = &field.voxels[nx * (y + ny * z)..][..nx];
+                for ((&v, low), high) in line.iter().zip(&mut low).zip(&mut high) {
+                    *low = least(*low, v);
+                    *high = most(*high, v);
+                }
             }
         }
+        // Of each voxel and as many behind it as a block has cells, less one.
+        let (mut least_from, mut most_from) = (low.clone(), high.clone());
+        for log2 in 0..LOG2 {
+            join(&mut least_from, 1 << log2, least);
+            join(&mut most_from, 1 << log2, most);
+        }
+        for (i, range) in ranges.iter_mut().enumerate() {
+            let voxels = voxels_of::<LOG2>(i, nx);
+            let (first, last) = (*voxels.start(), *voxels.end());
+            *range = [least(least_from[first], low[last]).to_f32(), most(most_from[first], high[last]).to_f32()];
+        }
     }
-    for (i, range) in row.iter_mut().enumerate() {
-        let (low, high) = (&low[voxels_of::<LOG2>(i, nx)], &high[voxels_of::<LOG2>(i, nx)]);
-        let least = low.iter().fold(low[0], |a, &b| if b < a { b } else { a });
-        let most = high.iter().fold(high[0], |a, &b| if b > a { b } else { a });
-        *range = [least.to_f32(), most.to_f32()];
+}
+
+#[inline(always)]
+fn least<V: Voxel>(a: V, b: V) -> V {
+    if b < a { b } else { a }
+}
+
+#[inline(always)]
+fn most<V: Voxel>(a: V, b: V) -> V {
+    if b > a { b } else { a }
+}
+
+/// Joins each element of a line with the one so far behind it, where there is one.
+#[inline(always)]
+fn join<V: Voxel>(line: &mut [V], distance: usize, both: impl Fn(V, V) -> V) {
+    let all = line.to_vec();
+    let behind = &all[distance.min(all.len())..];
+    for (x, &y) in line.iter_mut().zip(behind) {
+        *x = both(*x, y);
     }
 }
 

@@ -1,7 +1,9 @@
 //! Where something may show: blocks of cells, and the empty neighbourhoods around the others.
 
+use rayon::prelude::*;
+
 use crate::field::BlockRanges;
-use crate::simd::{Ints, Lanes, Mask};
+use crate::simd::{Ints, Lanes};
 
 /// Base-2 logarithm of the cells per axis of a block.
 pub(super) const LOG2_BLOCK: u32 = 2;
@@ -26,11 +28,12 @@ impl Occupancy {
     }
 
     /// The blocks whose range of stored values, with what rounding makes of interpolated ones, may show something.
-    pub(super) fn new(values: &BlockRanges<LOG2_BLOCK>, may_show: impl Fn([f32; 2]) -> bool) -> Self {
+    pub(super) fn new(values: &BlockRanges<LOG2_BLOCK>, may_show: impl Fn([f32; 2]) -> bool + Sync) -> Self {
         let blocks = values.blocks();
         let is_empty = |range: &[f32; 2]| !may_show(super::empty_space::widened(*range));
-        let known = values.ranges().iter().map(|range| if is_empty(range) { LOG2_BLOCK as u8 } else { 0 });
-        let empty = known.chain([0; 3]).collect();
+        let known = values.ranges().par_iter().map(|range| if is_empty(range) { LOG2_BLOCK as u8 } else { 0 });
+        let mut empty: Vec<u8> = known.collect();
+        empty.extend([0; 3]);
         let mut occupancy = Occupancy { blocks, empty };
         for log2_cells in LOG2_BLOCK + 1..=LOG2_LARGEST {
             occupancy.join(log2_cells - LOG2_BLOCK, log2_cells as u8);
@@ -56,15 +59,14 @@ impl Occupancy {
         }
     }
 
-    /// The cubes of cells around cells: the base-2 logarithm of their cells per axis, and whether nothing shows in them.
+    /// The cubes of cells around cells in which nothing shows: the base-2 logarithm of their cells per axis, 0 where
+    /// something may show.
     #[inline(always)]
-    pub(super) fn around<L: Lanes>(&self, [i, j, k]: [L::Ints; 3]) -> (L::Ints, L::Mask) {
+    pub(super) fn around<L: Lanes>(&self, [i, j, k]: [L::Ints; 3]) -> L::Ints {
         let [nx, ny, _] = self.blocks;
         let (row, slab) = (L::Ints::splat(nx as i32), L::Ints::splat((nx * ny) as i32));
         let [i, j, k] = [i.shifted_right(LOG2_BLOCK), j.shifted_right(LOG2_BLOCK), k.shifted_right(LOG2_BLOCK)];
-        let known = L::Ints::bytes(&self.empty, i + j * row + k * slab);
-        let shows = known.eq(L::Ints::splat(0));
-        (L::Ints::select(shows, L::Ints::splat(LOG2_BLOCK as i32), known), <L::Mask as Mask>::ALL.and_not(shows))
+        L::Ints::bytes(&self.empty, i + j * row + k * slab)
     }
 }
 
@@ -93,8 +95,9 @@ mod tests {
         let mut largest = 0;
         for n in 0..2000 {
             let cell = [n * 37 % 149, n * 53 % 89, n * 29 % 69];
-            let (log2, is_empty) = occupancy.around::<f32>(cell.map(|c| c as i32));
-            let log2 = log2 as u32;
+            let log2 = occupancy.around::<f32>(cell.map(|c| c as i32)) as u32;
+            let is_empty = log2 > 0;
+            let log2 = if is_empty { log2 } else { LOG2_BLOCK };
             assert_eq!(is_empty, !cube_shows(cell, log2), "cell {cell:?}, cube of 2^{log2}");
             if is_empty && log2 < LOG2_LARGEST {
                 assert!(cube_shows(cell, log2 + 1), "cell {cell:?} could leap further than 2^{log2}");
@@ -102,6 +105,6 @@ mod tests {
             largest = u32::max(largest, log2);
         }
         assert!(largest >= 5, "found cubes of up to 2^{largest} cells");
-        assert_eq!(Occupancy::full(dims).around::<f32>([5, 5, 5]), (LOG2_BLOCK as i32, false));
+        assert_eq!(Occupancy::full(dims).around::<f32>([5, 5, 5]), 0);
     }
 }

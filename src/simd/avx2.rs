@@ -115,6 +115,12 @@ impl Lanes for F32x8 {
         F32x8(unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low)) })
     }
     #[inline(always)]
+    fn to_doubles(self) -> F64x8 {
+        F64x8(unsafe {
+            [_mm256_cvtps_pd(_mm256_castps256_ps128(self.0)), _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(self.0))]
+        })
+    }
+    #[inline(always)]
     fn load(from: &[f32]) -> Self {
         F32x8(unsafe { _mm256_loadu_ps(from[..8].as_ptr()) })
     }

@@ -18,6 +18,8 @@ pub(crate) trait Lanes: Number {
 
     /// The nearest f32 to each f64.
     fn from_doubles(doubles: Self::Doubles) -> Self;
+    /// Each number, exactly.
+    fn to_doubles(self) -> Self::Doubles;
     /// The same number in every lane.
     #[inline(always)]
     fn splat(x: f32) -> Self {

@@ -14,6 +14,10 @@ impl Lanes for f32 {
         doubles as f32
     }
     #[inline(always)]
+    fn to_doubles(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline(always)]
     fn load(from: &[f32]) -> Self {
         from[0]
     }

@@ -70,6 +70,7 @@ impl Kernel for Everything {
             let few = few.max(L::Ints::splat(0));
             let more = [
                 L::from_doubles(d - e),
+                L::from_doubles(x.to_doubles() * y.to_doubles()),
                 L::from_doubles(d.floor() + e),
                 L::from_doubles(d.min(e)),
                 L::from_doubles(d.max(e)),
@@ -91,8 +92,8 @@ impl Kernel for Everything {
         }
         for batch in a.as_chunks::<BATCH>().0 {
             let (before, all) = L::accumulated(&batch.map(|x| crate::math::absorbed_f32(x.abs())));
-            out[40].extend(before.map(f32::to_bits));
-            out[41].extend([(all + L::sum(batch)).to_bits(); BATCH]);
+            out[50].extend(before.map(f32::to_bits));
+            out[51].extend([(all + L::sum(batch)).to_bits(); BATCH]);
         }
         out.concat()
     }

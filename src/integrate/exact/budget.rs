@@ -24,6 +24,21 @@ impl Budget {
         Budget { tolerance, spent: 0.0 }
     }
 
+    /// An account of which so much is spent.
+    pub(super) fn resumed(tolerance: f64, spent: f64) -> Self {
+        Budget { tolerance, spent }
+    }
+
+    /// What has been spent.
+    pub(super) fn spent(&self) -> f64 {
+        self.spent
+    }
+
+    /// What pieces and the rest of a ray that ends may cost together.
+    pub(super) fn of_pieces_and_rest(tolerance: f64) -> f64 {
+        PIECES_AND_REST * tolerance
+    }
+
     /// What pieces may cost so that all of them together keep to the account: a share of what each absorbs, and one to be
     /// shared out by length.
     pub(super) fn of_pieces(tolerance: f64) -> [f64; 2] {
@@ -41,7 +56,7 @@ impl Budget {
 
     /// Whether a ray may end with an error of at most `rest`.
     pub(super) fn may_end(&self, rest: f64) -> bool {
-        self.spent + rest <= PIECES_AND_REST * self.tolerance
+        self.spent + rest <= Budget::of_pieces_and_rest(self.tolerance)
     }
 
     /// Bound on the error of the ray, if it ends with an error of at most `rest`; rounding included.

@@ -212,24 +212,18 @@ impl Frame<'_> {
     pub(super) fn harm_per_mm(&self) -> f64 {
         self.brightest.per_mm.max(self.brightest.extinction_per_mm) / (OF_A_CUT * self.tolerance)
     }
-
-    /// Bound on the error of a channel if a ray is cut short at a transmittance, `rest_mm` before its end.
-    #[inline(always)]
-    pub(super) fn of_rest(&self, transmittance: f64, rest_mm: f64) -> f64 {
-        self.brightest.of_rest(transmittance, rest_mm)
-    }
 }
 
 /// Light and error gathered so far, front to back.
 #[derive(Debug)]
 pub(super) struct Front {
-    radiance: [f64; 3],
-    transmittance: f64,
-    opacity: f64,
-    budget: Budget,
+    pub(super) radiance: [f64; 3],
+    pub(super) transmittance: f64,
+    pub(super) opacity: f64,
+    pub(super) budget: Budget,
     /// Of errors that are estimated.
-    variance: f64,
-    pieces: u64,
+    pub(super) variance: f64,
+    pub(super) pieces: u64,
 }
 
 impl Front {
@@ -245,48 +239,9 @@ impl Front {
         }
     }
 
-    /// What is left of light from behind.
-    #[inline(always)]
-    pub(super) fn transmittance(&self) -> f64 {
-        self.transmittance
-    }
-
     /// What the budget still allows up to a fraction of the ray, without absorbing any further.
     pub(super) fn left(&self, fraction: f64) -> f64 {
         self.budget.left(self.transmittance, fraction)
-    }
-
-    /// Whether the ray may end with an error of at most `rest`.
-    #[inline(always)]
-    pub(super) fn may_end(&self, rest: f64) -> bool {
-        self.budget.may_end(rest)
-    }
-
-    /// Takes the estimated variance of a channel of what was passed last, seen with this transmittance.
-    #[inline(always)]
-    pub(super) fn vary(&mut self, transmittance: f64, variance: f64) {
-        self.variance += transmittance * transmittance * variance;
-    }
-
-    /// Passes a stretch that ends at a fraction of the ray and took some pieces, if the budget allows its error.
-    #[inline(always)]
-    pub(super) fn take(&mut self, radiance: [f32; 3], absorbed: f32, error: f32, fraction: f64, pieces: u64) -> bool {
-        let t = self.transmittance;
-        let next = t - t * f64::from(absorbed);
-        let error = t * f64::from(error);
-        let fits = error <= self.budget.left(next, fraction);
-        // Nor does NaN.
-        if !fits {
-            return false;
-        }
-        for (sum, x) in self.radiance.iter_mut().zip(radiance) {
-            *sum += t * f64::from(x);
-        }
-        self.opacity += t * f64::from(absorbed);
-        self.transmittance = next;
-        self.budget.spend(error);
-        self.pieces += pieces;
-        true
     }
 
     /// Passes a stretch whose integral has a closed form.

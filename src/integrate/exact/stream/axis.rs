@@ -47,6 +47,14 @@ impl Axis {
         }
     }
 
+    /// The lower end of an interval; asked for one more, the upper end of the last.
+    pub(super) fn lower_end(&self, interval: usize) -> f32 {
+        match interval {
+            0 => -FAR,
+            i => self.knots.get(i - 1).copied().unwrap_or(FAR),
+        }
+    }
+
     /// Number of intervals, those beyond the ends included.
     pub(super) fn intervals(&self) -> usize {
         self.knots.len() + 1

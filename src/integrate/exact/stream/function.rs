@@ -6,7 +6,7 @@ use crate::classify::{OneD, TwoD};
 use crate::integrate::exact::piece::{Integral, Optics};
 use crate::math::bernstein::{Cubic, elevate, product};
 use crate::math::each;
-use crate::simd::{Ints, Lanes, Table};
+use crate::simd::{Ints, Lanes, Mask, Table};
 
 /// Components of emission and extinction.
 const COMPONENTS: usize = 4;
@@ -15,6 +15,9 @@ const COMPONENTS: usize = 4;
 pub(in crate::integrate::exact) trait Function<const F: usize>: Sync {
     /// The axis of a field.
     fn axis(&self, field: usize) -> &Axis;
+
+    /// In which lanes nothing absorbs or emits for values in a range, whatever else there is.
+    fn is_dark<L: Lanes>(&self, low: L, high: L) -> L::Mask;
 
     /// In which lanes nothing absorbs or emits for all fields in intervals from `first` to `last`.
     fn is_empty<L: Lanes>(&self, first: [L::Ints; F], last: [L::Ints; F]) -> L::Mask;
@@ -37,6 +40,9 @@ pub(in crate::integrate::exact) struct OfValue {
     slope: [Table; COMPONENTS],
     /// Lit intervals below each.
     lit_before: Table,
+    /// The values from the first lit interval to the last, and whether there are dark ones between.
+    lit: [f32; 2],
+    has_gaps: bool,
 }
 
 impl OfValue {
@@ -59,16 +65,21 @@ impl OfValue {
             })
             .collect();
         let table = |c: usize, k: usize| Table::new(&pieces.iter().map(|p| p[c][k]).collect::<Vec<f32>>());
+        let is_lit: Vec<bool> = pieces.iter().map(|piece| piece.iter().flatten().any(|&x| x != 0.0)).collect();
         let mut lit_before = vec![0.0];
-        for piece in &pieces {
-            let lit = piece.iter().flatten().any(|&x| x != 0.0);
+        for &lit in &is_lit {
             lit_before.push(lit_before[lit_before.len() - 1] + f32::from(u8::from(lit)));
         }
+        let ends = is_lit.iter().position(|&lit| lit).zip(is_lit.iter().rposition(|&lit| lit));
+        let lit = ends.map_or([f32::INFINITY; 2], |(first, last)| [axis.lower_end(first), axis.lower_end(last + 1)]);
+        let has_gaps = ends.is_some_and(|(first, last)| is_lit[first..last].contains(&false));
         OfValue {
             axis,
             low: std::array::from_fn(|c| table(c, 0)),
             slope: std::array::from_fn(|c| table(c, 1)),
             lit_before: Table::new(&lit_before),
+            lit,
+            has_gaps,
         }
     }
 }
@@ -76,6 +87,17 @@ impl OfValue {
 impl Function<1> for OfValue {
     fn axis(&self, _: usize) -> &Axis {
         &self.axis
+    }
+
+    #[inline(always)]
+    fn is_dark<L: Lanes>(&self, low: L, high: L) -> L::Mask {
+        let [first, last] = self.lit;
+        let dark = high.lt(L::splat(first)).or(L::splat(last).le(low));
+        if self.has_gaps {
+            dark.or(self.is_empty::<L>([self.axis.interval(low)], [self.axis.interval(high)]))
+        } else {
+            dark
+        }
     }
 
     #[inline(always)]
@@ -184,6 +206,12 @@ fn at<L: Lanes>(i: L::Ints, j: L::Ints, width: usize) -> L::Ints {
 impl Function<2> for OfValueAndMagnitude {
     fn axis(&self, field: usize) -> &Axis {
         if field == 0 { &self.values } else { &self.magnitudes }
+    }
+
+    #[inline(always)]
+    fn is_dark<L: Lanes>(&self, low: L, high: L) -> L::Mask {
+        let steepest = L::Ints::splat(self.magnitudes.intervals() as i32 - 1);
+        self.is_empty::<L>([self.values.interval(low), L::Ints::splat(0)], [self.values.interval(high), steepest])
     }
 
     #[inline(always)]

@@ -2,11 +2,11 @@
 
 use super::axis::Axis;
 use super::function::Function;
-use super::queue::{Passed, ROOM, Shown, Way};
+use super::queue::{Passed, Shown, Way};
 use super::voxels::{Corners, Voxels, magnitudes};
+use super::walk::{AHEAD, Cells, Lines, RAYS};
 use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, range, trilinear_along};
-use crate::math::each;
 use crate::simd::{Ints, Lanes, Mask, Pairs};
 
 /// Roundings that a value of a cubic may have suffered.
@@ -14,7 +14,7 @@ pub(super) const ROUNDINGS: f64 = 8.0;
 
 /// The field of one value, or of value and gradient magnitude.
 pub(in crate::integrate::exact) trait Fields<const F: usize> {
-    /// The fields along cells; `dark` says where nothing shows for corners in a range, whatever else is there.
+    /// The fields along cells.
     fn along<L: Lanes, V: Voxel + Pairs>(
         voxels: &Voxels<'_, V>,
         at: &Corners<L::Ints>,
@@ -54,73 +54,68 @@ impl Fields<2> for Read {
     }
 }
 
-/// Looks into the cells passed. Those whose fields stay in one interval go to `whole`, those that may cross a knot to `cut`.
+/// Looks into the cells that rays pass at several steps, the first lane's slot at the first step being `first`. Those whose fields
+/// stay in one interval go to `whole`, those that may cross a knot to `cut`.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "what is read, what with, and where it goes")]
 pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
-    passed: &Passed,
+    lines: &Lines<L>,
+    steps: &[Cells<L>; AHEAD],
+    first: usize,
     voxels: &Voxels<'_, V>,
     function: &impl Function<F>,
     is_lit: bool,
+    passed: &mut Passed,
     whole: &mut Shown<F>,
     cut: &mut Shown<F>,
 ) where
     Read: Fields<F>,
 {
-    whole.count = 0;
-    cut.count = 0;
-    let nothing = L::Ints::splat(0);
-    for first in (0..passed.count).step_by(L::LANES) {
-        let slot = L::Ints::count() + L::Ints::splat(first as i32);
-        let is_cell = slot.lt(L::Ints::splat(passed.count as i32));
-        let base = L::Ints::load(&passed.base[first..]);
-        let corners = voxels.corners::<L>(base);
-        // Corners alone already say that most cells are dark.
-        let [low, high] = range(&corners);
-        let values = function.axis(0);
-        let mut all_low = [nothing; F];
-        let mut all_high = [nothing; F];
-        all_low[0] = values.interval(low);
-        all_high[0] = values.interval(high);
-        for f in 1..F {
-            all_high[f] = L::Ints::splat(function.axis(f).intervals() as i32 - 1);
-        }
-        let may_show = is_cell.and_not(function.is_empty::<L>(all_low, all_high));
-        if !may_show.any() {
+    // Corners alone already say that most cells are dark. First those of all steps, so that no read waits for another.
+    let mut corners = [[L::ZERO; 8]; AHEAD];
+    let mut may_show = [<L::Mask as Mask>::ALL; AHEAD];
+    for n in 0..AHEAD {
+        // Where no ray passes a cell, memory is left alone.
+        let base = L::Ints::select(steps[n].passes, steps[n].base, L::Ints::splat(0));
+        corners[n] = voxels.corners::<L>(base);
+        let [low, high] = range(&corners[n]);
+        may_show[n] = steps[n].passes.and_not(function.is_dark(low, high));
+    }
+    for n in 0..AHEAD {
+        if !may_show[n].any() {
             continue;
         }
-        let at = Corners {
-            cell: each(
-                #[inline(always)]
-                |a| L::Ints::load(&passed.cell[a][first..]),
-            ),
-            base,
-        };
-        let (from, to) = (load(&passed.from, first), load(&passed.to, first));
-        let fields = <Read as Fields<F>>::along(voxels, &at, &corners, from, to);
-        let mut least = [nothing; F];
-        let mut most = [nothing; F];
+        let (cells, corners, slot) = (&steps[n], &corners[n], first + n * RAYS);
+        let at = Corners { cell: lines.cell(cells), base: cells.base };
+        let (from, to) = (lines.coordinates(cells, cells.at_mm), lines.coordinates(cells, cells.to_mm));
+        let fields = <Read as Fields<F>>::along(voxels, &at, corners, from, to);
+        let mut least = [L::Ints::splat(0); F];
+        let mut most = least;
         let mut stays = <L::Mask as Mask>::ALL;
         for f in 0..F {
             [least[f], most[f]] = intervals(function.axis(f), &fields[f]);
             stays = stays.and(least[f].eq(most[f]));
         }
-        let shows = may_show.and_not(function.is_empty::<L>(least, most));
-        let length_mm = L::load(&passed.length_mm[first..]);
+        let shows = may_show[n].and_not(function.is_empty::<L>(least, most));
+        if !shows.any() {
+            continue;
+        }
+        at.base.store(&mut passed.base[slot..]);
+        for a in 0..3 {
+            at.cell[a].store(&mut passed.cell[a][slot..]);
+            from[a].store(&mut passed.from[a][slot..]);
+            to[a].store(&mut passed.to[a][slot..]);
+        }
+        L::from_doubles(cells.to_mm).store(&mut passed.exit_mm[slot..]);
+        let slots = L::Ints::count() + L::Ints::splat(slot as i32);
+        let length_mm = L::from_doubles(cells.to_mm - cells.at_mm);
         let way = is_lit.then(
             #[inline(always)]
-            || Way { corners: at, seat: L::Ints::load(&passed.seat[first..]), from, to },
+            || Way { corners: at, seat: slots.and(L::Ints::splat(RAYS as i32 - 1)), from, to },
         );
-        whole.append(shows.and(stays), slot, &fields, &least, length_mm, way.as_ref());
-        cut.append(shows.and_not(stays), slot, &fields, &least, length_mm, way.as_ref());
+        whole.append(shows.and(stays), slots, &fields, &least, length_mm, way.as_ref());
+        cut.append(shows.and_not(stays), slots, &fields, &least, length_mm, way.as_ref());
     }
-}
-
-#[inline(always)]
-fn load<L: Lanes>(all: &[[f32; ROOM]; 3], first: usize) -> [L; 3] {
-    each(
-        #[inline(always)]
-        |a| L::load(&all[a][first..]),
-    )
 }
 
 /// The intervals of the smallest and the largest coefficient; where a knot is steep, of all that rounding may make of them.

@@ -1,11 +1,11 @@
 //! The fast kernel: many cells of many rays side by side, in vector registers.
 //!
 //! What a cell does to light does not depend on the light that reaches it. So rays are worked off in rounds of a few hundred
-//! cells, in four steps: rays `walk` through the blocks in which something can show and write down the cells they
-//! pass; `look` reads the corners of as many cells as a register has lanes, drops those in which nothing shows and makes the
-//! cubics of the others; `pieces` cuts those at the knots and integrates; and `front` composites the results ray by ray,
-//! front to back, within each ray's budget. A cell whose proven error is more than the budget allows, or whose cuts rounding
-//! might have misplaced, is integrated again in f64 by the twin of this kernel.
+//! cells, in four steps: rays `walk`, a lane each, leaping over blocks in which nothing shows, and `look` reads the corners of the
+//! cells that they pass, drops those in which nothing shows and makes the cubics of the others, without gaps between them;
+//! `pieces` cuts those at the knots and integrates; and `front` composites the results front to back, again a ray per lane,
+//! within each ray's budget. A cell whose proven error is more than the budget allows, or whose cuts rounding might have
+//! misplaced, is integrated again in f64 by the twin of this kernel.
 //!
 //! A lane does the same whatever its neighbours do, and the same at each level, so a picture has the same bits on every
 //! processor, for any number of threads and any order of tiles.
@@ -38,7 +38,7 @@ use crate::integrate::occupancy::Occupancy;
 use crate::scene::{Clip, Ray};
 use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
-use front::{InFlight, composite};
+use front::Fronts;
 use light::Seen;
 use lit::{Allowance, Scenery, lit};
 use look::look;
@@ -118,7 +118,9 @@ where
         let mut passed = Passed::new();
         let (mut whole, mut cut) = (Shown::<F>::new(), Shown::<F>::new());
         let mut results = Results::new();
-        let mut flying: [Option<InFlight>; RAYS] = [const { None }; RAYS];
+        let mut fronts = Fronts::new(stream.frame.tolerance, stream.frame.brightest);
+        // Who sits where, and looks where.
+        let mut seated: [Option<(usize, DVec3)>; RAYS] = [None; RAYS];
         let mut waiting = 0..count;
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
@@ -126,8 +128,10 @@ where
         let mut allowance = Allowance::new(by_absorption);
         let mut parts = shaded::Parts::<F>::new();
         loop {
-            for (seat, ray) in flying.iter_mut().enumerate() {
-                if let Some((number, traced)) = ray.as_ref().and_then(|ray| Some((ray.number, ray.traced?))) {
+            for (seat, ray) in seated.iter_mut().enumerate() {
+                if let Some((number, _)) = *ray
+                    && let Some(traced) = fronts.ended(seat, &walks)
+                {
                     ended(number, traced);
                     walks.leave(seat);
                     *ray = None;
@@ -137,30 +141,47 @@ where
                     let next = ray_of(number);
                     if let Some(chord) = stream.chord(&next) {
                         walks.enter(seat, &chord);
+                        fronts.enter(seat);
                         if let Some(lighting) = &stream.lighting {
                             seen.enter(seat, &next, &lighting.shading);
                         }
-                        let light = Front::new(stream.frame.tolerance);
-                        *ray = Some(InFlight { light, direction: next.direction, number, traced: None });
+                        *ray = Some((number, next.direction));
                     }
                 }
             }
-            if flying.iter().all(Option::is_none) {
+            if seated.iter().all(Option::is_none) {
                 return;
             }
-            walks.pass::<L>(&stream.occupancy, &mut passed);
             results.clear();
-            look::<L, V, F>(&passed, &stream.voxels, &stream.function, stream.lighting.is_some(), &mut whole, &mut cut);
+            whole.count = 0;
+            cut.count = 0;
+            walks.pass::<L>(
+                &stream.occupancy,
+                #[inline(always)]
+                |lines, steps, first| {
+                    look::<L, V, F>(
+                        lines,
+                        steps,
+                        first,
+                        &stream.voxels,
+                        &stream.function,
+                        stream.lighting.is_some(),
+                        &mut passed,
+                        &mut whole,
+                        &mut cut,
+                    )
+                },
+            );
             if let Some(lighting) = &stream.lighting {
-                for (seat, ray) in flying.iter().enumerate() {
-                    let Some(ray) = ray else { continue };
+                for (seat, _) in seated.iter().enumerate().filter(|(_, ray)| ray.is_some()) {
                     // What is behind counts the less the less light gets there.
-                    let counts = ray.light.transmittance() / walks.per_length_mm(seat);
+                    let light = fronts.get(seat);
+                    let counts = light.transmittance / walks.per_length_mm(seat);
                     allowance.per_mm[seat] = (per_ray / counts) as f32;
-                    let left = ray.light.left(walks.done(seat)) / ray.light.transmittance();
+                    let left = light.left(walks.done(seat)) / light.transmittance;
                     allowance.per_cell[seat] = (left.max(0.0) / STEPS as f64) as f32;
                     if let Some(estimate) = &stream.estimate {
-                        allowance.estimate(seat, estimate, ray.light.transmittance());
+                        allowance.estimate(seat, estimate, light.transmittance);
                     }
                 }
                 let (passed, voxels, seen, allowance) = (&passed, &stream.voxels, &seen, &allowance);
@@ -179,15 +200,11 @@ where
                 pieces::whole::<L, F>(&whole, &stream.function, &mut results);
                 pieces::cut::<L, F>(&cut, &stream.function, harm_per_mm, &mut results);
             }
-            composite(
-                &passed,
-                &results,
-                &walks,
-                &mut flying,
-                #[inline(always)]
-                |transmittance, rest_mm| stream.frame.of_rest(transmittance, rest_mm),
-                |seat, direction, light, cell| stream.again(&walks, seat, cell, direction, light, splits),
-            );
+            fronts.composite::<L>(&passed, &results, &walks, |seat, slot, light| {
+                let Some((_, direction)) = seated[seat] else { unreachable!("cells belong to rays") };
+                let cell = passed.cell.each_ref().map(|axis| axis[slot]);
+                stream.again(&walks, seat, cell, direction, light, splits);
+            });
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Cells between the steps of a round.
 
+use super::voxels::Corners;
+use super::walk::RAYS;
 use crate::math::bernstein::Cubic;
 use crate::simd::{Ints, Lanes, Mask};
-
-use super::voxels::Corners;
 
 /// Cells that a round works off together: enough to fill registers, few enough to stay in the first-level cache.
 pub(super) const CELLS: usize = 256;
@@ -11,36 +11,32 @@ pub(super) const CELLS: usize = 256;
 /// Room for a whole register after the last cell.
 pub(super) const ROOM: usize = CELLS + 16;
 
-/// Cells that rays have written down, in the order in which each ray passes them.
+/// Cells in which something may show, as rays passed them: by slot, which is the seat of the ray plus the number of seats times
+/// its step. What other slots have is left from earlier rounds.
 #[derive(Debug)]
 pub(super) struct Passed {
-    pub(super) count: usize,
     /// Place in memory of the lower corner.
-    pub(super) base: [i32; ROOM],
+    pub(super) base: [i32; CELLS],
     /// Lower corner, voxel indices.
-    pub(super) cell: [[i32; ROOM]; 3],
+    pub(super) cell: [[i32; CELLS]; 3],
     /// Entry and exit, in `[0, 1]³` of the cell.
-    pub(super) from: [[f32; ROOM]; 3],
-    pub(super) to: [[f32; ROOM]; 3],
-    /// Length, mm.
-    pub(super) length_mm: [f32; ROOM],
+    pub(super) from: [[f32; CELLS]; 3],
+    pub(super) to: [[f32; CELLS]; 3],
     /// Which ray, by its seat.
-    pub(super) seat: [i32; ROOM],
+    pub(super) seat: [i32; CELLS],
     /// Where the ray leaves the cell, mm from where it entered the volume.
-    pub(super) exit_mm: [f32; ROOM],
+    pub(super) exit_mm: [f32; CELLS],
 }
 
 impl Passed {
     pub(super) fn new() -> Self {
         Passed {
-            count: 0,
-            base: [0; ROOM],
-            cell: [[0; ROOM]; 3],
-            from: [[0.0; ROOM]; 3],
-            to: [[0.0; ROOM]; 3],
-            length_mm: [0.0; ROOM],
-            seat: [0; ROOM],
-            exit_mm: [0.0; ROOM],
+            base: [0; CELLS],
+            cell: [[0; CELLS]; 3],
+            from: [[0.0; CELLS]; 3],
+            to: [[0.0; CELLS]; 3],
+            seat: std::array::from_fn(|slot| (slot % RAYS) as i32),
+            exit_mm: [0.0; CELLS],
         }
     }
 }
@@ -83,6 +79,9 @@ impl<const F: usize> Shown<F> {
         length_mm: L,
         way: Option<&Way<L>>,
     ) {
+        if !chosen.any() {
+            return;
+        }
         let at = self.count;
         if let Some(way) = way {
             self.way.append(at, chosen, way);
@@ -166,7 +165,7 @@ impl<const N: usize> Ways<N> {
     }
 }
 
-/// What the cells passed do to light; nothing in those that were not shown.
+/// What the cells passed do to light, by slot.
 #[derive(Debug)]
 pub(super) struct Results {
     pub(super) radiance: [[f32; CELLS]; 3],
@@ -175,10 +174,8 @@ pub(super) struct Results {
     pub(super) error: [f32; CELLS],
     /// Variance of what the nodes of pieces miss.
     pub(super) variance: [f32; CELLS],
-    /// Pieces integrated.
+    /// Pieces integrated; 0 where nothing shows, and where nothing else is said.
     pub(super) pieces: [f32; CELLS],
-    /// Bit by bit, whether a cell has a result: something may show in it.
-    pub(super) shown: [u64; CELLS / 64],
 }
 
 impl Results {
@@ -189,23 +186,11 @@ impl Results {
             error: [0.0; CELLS],
             variance: [0.0; CELLS],
             pieces: [0.0; CELLS],
-            shown: [0; CELLS / 64],
         }
     }
 
     /// Forgets all results.
     pub(super) fn clear(&mut self) {
-        self.shown.fill(0);
-    }
-
-    /// The cells that have results, in order.
-    #[inline(always)]
-    pub(super) fn slots(&self) -> impl Iterator<Item = usize> {
-        self.shown.iter().enumerate().flat_map(|(word, &bits)| {
-            std::iter::successors((bits != 0).then_some(bits), |&rest| {
-                Some(rest & (rest - 1)).filter(|&rest| rest != 0)
-            })
-            .map(move |rest| 64 * word + rest.trailing_zeros() as usize)
-        })
+        self.pieces.fill(0.0);
     }
 }

@@ -38,7 +38,7 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     }
 
     /// Where something may show, given the ranges of stored values at which it does.
-    pub(in crate::integrate::exact) fn occupancy(&self, may_show: impl Fn([f32; 2]) -> bool) -> Occupancy {
+    pub(in crate::integrate::exact) fn occupancy(&self, may_show: impl Fn([f32; 2]) -> bool + Sync) -> Occupancy {
         match Trilinear::new(self.samples, self.dims) {
             Ok(field) => Occupancy::new(&BlockRanges::new(&field), may_show),
             // Longer than macrocells address.

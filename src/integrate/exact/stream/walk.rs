@@ -1,10 +1,13 @@
 //! Rays on their way through the lattice, side by side: from face to face where something may show, and over everything else
 //! in leaps.
 //!
-//! All crossings are computed from the ray's entry into the volume, in f64, and never accumulated, so that no error grows
-//! along the ray; inside a cell coordinates are in `[0, 1]`, and f32 is enough.
+//! Distances are counted from where a ray enters the volume, and every crossing is computed from there in f64 and never
+//! accumulated, so that no error grows along the ray; inside a cell coordinates are in `[0, 1]`, and f32 is enough.
+//!
+//! Every ray is made to rise: along an axis on which it falls, cells and faces are counted downwards from 0, cell `c` being
+//! cell `−1 − c` of the lattice. Aligned blocks of `2^n` cells stay aligned blocks.
 
-use super::queue::{CELLS, Passed};
+use super::queue::CELLS;
 use crate::field::Chord;
 use crate::integrate::exact::cells::Segment;
 use crate::integrate::occupancy::Occupancy;
@@ -13,73 +16,125 @@ use crate::simd::{Doubles, Ints, Lanes, Mask};
 /// Rays in flight at a time: as many as the widest register has lanes.
 pub(super) const RAYS: usize = 16;
 
-/// Steps of a ray in a round: as many as there is room for if each comes to a cell, so that no ray's rounds depend on the rays
-/// beside it, and few, since what lies behind an opaque cell is looked at in vain.
+/// Steps of a ray in a round, a cell at most each. No ray's rounds depend on the rays beside it; few, since what lies behind
+/// an opaque cell is looked at in vain.
 pub(super) const STEPS: usize = CELLS / RAYS;
 
-/// Rays inside a volume, one per seat.
+/// Steps that rays walk ahead before anything is read: memory is slow, and many reads at a time hide that.
+pub(super) const AHEAD: usize = 4;
+
+/// Leaps of a ray in a step, at most.
+const LEAPS: usize = 2;
+
+/// Where a ray crosses the faces across an axis on which it does not move: beyond everything, and finite, since it is
+/// multiplied by 0.
+const NEVER_MM: f64 = 1e30;
+
+/// A ray that moves less than this along an axis, voxels, is taken not to: the values along it change by less than rounding.
+const STILL: f64 = 1e-7;
+
+/// A leap that ends so little before a face, voxels, ends behind it; much more than rounding.
+const NUDGE: f64 = 1e-9;
+
+/// Rays inside a volume, one per seat. Cells, faces and places along an axis are those of the rising ray.
 #[derive(Debug)]
 pub(super) struct Walks {
-    /// Entry as a continuous index, and voxels per mm.
+    /// Entry as a continuous index, a [`NUDGE`] on where it moves, and voxels per mm.
     entry: [[f64; RAYS]; 3],
     per_mm: [[f64; RAYS]; 3],
-    /// mm per voxel; infinite along an axis on which the ray does not move.
+    /// mm per voxel, and where each would cross face 0 across each axis, mm; 0 and [`NEVER_MM`] where it does not move.
     mm_per: [[f64; RAYS]; 3],
-    /// Where each enters and leaves the volume, mm from its origin.
-    entry_mm: [f64; RAYS],
+    face_zero_mm: [[f64; RAYS]; 3],
+    /// The coordinate in a cell of the lattice, in `[0, 1]`, where it is left through the next face, and what it is less per mm
+    /// before that.
+    leaves_at: [[f64; RAYS]; 3],
+    less_per_mm: [[f64; RAYS]; 3],
+    /// -1 where a ray falls, 0 where it rises.
+    falls: [[i32; RAYS]; 3],
+    /// The last cell before the border.
+    last_cell: [[i32; RAYS]; 3],
+    /// From a cell to the next in memory.
+    strides: [[i32; RAYS]; 3],
+    /// Length inside the volume.
     exit_mm: [f64; RAYS],
-    /// 1 over the length inside, 1/mm.
+    /// 1 over that, 1/mm.
     per_length_mm: [f64; RAYS],
     /// How far each has come.
     at_mm: [f64; RAYS],
     /// How far each had come a round before.
     settled_mm: [f64; RAYS],
-    /// Each stays in the same block, or among empty ones, up to here.
-    until_mm: [f64; RAYS],
     cell: [[i32; RAYS]; 3],
+    /// Place in memory of the cell's lower corner.
+    base: [i32; RAYS],
     /// Where each crosses the next face across each axis.
     next_mm: [[f64; RAYS]; 3],
-    last_cell: [i32; 3],
-    strides: [i32; 2],
+    dims: [i32; 3],
 }
 
 impl Walks {
     /// Nobody in a lattice of `dims` voxels.
-    pub(super) fn new([nx, ny, nz]: [usize; 3]) -> Self {
+    pub(super) fn new(dims: [usize; 3]) -> Self {
         Walks {
             entry: [[0.0; RAYS]; 3],
             per_mm: [[0.0; RAYS]; 3],
             mm_per: [[0.0; RAYS]; 3],
-            entry_mm: [0.0; RAYS],
+            face_zero_mm: [[0.0; RAYS]; 3],
+            leaves_at: [[0.0; RAYS]; 3],
+            less_per_mm: [[0.0; RAYS]; 3],
+            falls: [[0; RAYS]; 3],
+            last_cell: [[0; RAYS]; 3],
+            strides: [[0; RAYS]; 3],
             exit_mm: [0.0; RAYS],
             per_length_mm: [0.0; RAYS],
             at_mm: [0.0; RAYS],
             settled_mm: [0.0; RAYS],
-            until_mm: [0.0; RAYS],
             cell: [[0; RAYS]; 3],
+            base: [0; RAYS],
             next_mm: [[0.0; RAYS]; 3],
-            last_cell: [nx, ny, nz].map(|n| n as i32 - 2),
-            strides: [nx as i32, (nx * ny) as i32],
+            dims: dims.map(|n| n as i32),
         }
     }
 
     /// Seats a ray where it enters the volume.
     pub(super) fn enter(&mut self, seat: usize, chord: &Chord) {
-        self.entry_mm[seat] = chord.entry_mm;
-        self.exit_mm[seat] = chord.entry_mm + chord.length_mm;
-        self.per_length_mm[seat] = 1.0 / chord.length_mm;
-        self.at_mm[seat] = chord.entry_mm;
-        self.until_mm[seat] = chord.entry_mm;
-        for a in 0..3 {
+        self.at_mm[seat] = 0.0;
+        self.base[seat] = 0;
+        let [nx, ny, _] = self.dims;
+        let mut exit_mm = chord.length_mm;
+        for (a, stride) in [1, nx, nx * ny].into_iter().enumerate() {
             let (p, d) = (chord.entry_index[a], chord.index_per_mm[a]);
+            let falls = d < 0.0;
+            // On a face, the cell that the ray is about to pass; at the border, the one inside.
+            let cell = if falls { p.ceil() - 1.0 } else { p.floor() };
+            let cell = (cell as i32).clamp(0, self.dims[a] - 2);
+            self.base[seat] += stride * cell;
+            let (rising, last_cell) = if falls { (-1 - cell, -1) } else { (cell, self.dims[a] - 2) };
+            self.cell[a][seat] = rising;
+            self.last_cell[a][seat] = last_cell;
+            self.falls[a][seat] = -i32::from(falls);
+            self.strides[a][seat] = if falls { -stride } else { stride };
+            let p = if falls { -p } else { p };
             self.entry[a][seat] = p;
-            self.per_mm[a][seat] = d;
-            self.mm_per[a][seat] = 1.0 / d;
-            // On a face, the cell that the ray is about to pass.
-            let cell = if d < 0.0 { p.ceil() - 1.0 } else { p.floor() };
-            self.cell[a][seat] = (cell as i32).clamp(0, self.last_cell[a]);
-            self.next_mm[a][seat] = self.face_mm(seat, a, self.cell[a][seat]);
+            if d.abs() * chord.length_mm < STILL {
+                self.per_mm[a][seat] = 0.0;
+                self.mm_per[a][seat] = 0.0;
+                self.face_zero_mm[a][seat] = NEVER_MM;
+                self.leaves_at[a][seat] = p.abs() - f64::from(cell);
+                self.less_per_mm[a][seat] = 0.0;
+            } else {
+                self.per_mm[a][seat] = d.abs();
+                self.mm_per[a][seat] = 1.0 / d.abs();
+                self.face_zero_mm[a][seat] = -p / d.abs();
+                self.entry[a][seat] = p + NUDGE;
+                self.leaves_at[a][seat] = if falls { 0.0 } else { 1.0 };
+                self.less_per_mm[a][seat] = d;
+                // No ray steps over the border, whatever rounding does.
+                exit_mm = exit_mm.min(self.crossing_mm(seat, a, last_cell + 1));
+            }
+            self.next_mm[a][seat] = self.crossing_mm(seat, a, rising + 1);
         }
+        self.exit_mm[seat] = exit_mm;
+        self.per_length_mm[seat] = 1.0 / exit_mm;
     }
 
     /// Frees a seat.
@@ -91,14 +146,17 @@ impl Walks {
         self.at_mm[seat] >= self.exit_mm[seat]
     }
 
-    /// Length inside the volume, mm.
-    #[inline(always)]
-    pub(super) fn length_mm(&self, seat: usize) -> f64 {
-        self.exit_mm[seat] - self.entry_mm[seat]
+    /// Lengths inside the volume, mm.
+    pub(super) fn lengths_mm(&self) -> &[f64; RAYS] {
+        &self.exit_mm
+    }
+
+    /// 1 over the lengths inside the volume, 1/mm.
+    pub(super) fn per_lengths_mm(&self) -> &[f64; RAYS] {
+        &self.per_length_mm
     }
 
     /// 1 over the length inside the volume, 1/mm.
-    #[inline(always)]
     pub(super) fn per_length_mm(&self, seat: usize) -> f64 {
         self.per_length_mm[seat]
     }
@@ -108,40 +166,28 @@ impl Walks {
         self.fraction(seat, self.settled_mm[seat])
     }
 
-    /// The fraction of a ray that lies in front of a distance from its origin.
+    /// The fraction of a ray that lies in front of a distance from its entry.
     pub(super) fn fraction(&self, seat: usize, at_mm: f64) -> f64 {
-        (at_mm - self.entry_mm[seat]) * self.per_length_mm[seat]
+        at_mm * self.per_length_mm[seat]
     }
 
-    /// Where a ray leaves a cell across an axis; infinite for the border and an axis on which it does not move.
-    fn face_mm(&self, seat: usize, a: usize, cell: i32) -> f64 {
-        let d = self.per_mm[a][seat];
-        let leaves = if d < 0.0 { cell == 0 } else { cell == self.last_cell[a] };
-        if d == 0.0 || leaves {
-            return f64::INFINITY;
-        }
-        self.crossing_mm(seat, a, if d < 0.0 { cell } else { cell + 1 })
-    }
-
+    /// Where a ray crosses a face across an axis.
     fn crossing_mm(&self, seat: usize, a: usize, face: i32) -> f64 {
-        self.entry_mm[seat] + (f64::from(face) - self.entry[a][seat]) * self.mm_per[a][seat]
+        self.face_zero_mm[a][seat] + f64::from(face) * self.mm_per[a][seat]
     }
 
-    /// A cell that a ray has passed, in f64.
+    /// A cell of the lattice that a ray has passed, in f64; distances are those from the ray's entry.
     pub(super) fn segment(&self, seat: usize, cell: [i32; 3]) -> Segment {
-        let (mut from_mm, mut to_mm) = (self.entry_mm[seat], self.exit_mm[seat]);
-        for (a, &cell) in cell.iter().enumerate() {
-            let d = self.per_mm[a][seat];
-            to_mm = to_mm.min(self.face_mm(seat, a, cell));
-            let enters = if d < 0.0 { cell < self.last_cell[a] } else { cell > 0 };
-            if d != 0.0 && enters {
-                from_mm = from_mm.max(self.crossing_mm(seat, a, if d < 0.0 { cell + 1 } else { cell }));
-            }
+        let (mut from_mm, mut to_mm) = (0.0f64, self.exit_mm[seat]);
+        for a in (0..3).filter(|&a| self.per_mm[a][seat] != 0.0) {
+            let rising = cell[a] ^ self.falls[a][seat];
+            from_mm = from_mm.max(self.crossing_mm(seat, a, rising));
+            to_mm = to_mm.min(self.crossing_mm(seat, a, rising + 1));
         }
         let local = |mm: f64| {
             std::array::from_fn(|a| {
-                let p = self.entry[a][seat] + (mm - self.entry_mm[seat]) * self.per_mm[a][seat];
-                (p - f64::from(cell[a])).clamp(0.0, 1.0)
+                let left_mm = self.crossing_mm(seat, a, (cell[a] ^ self.falls[a][seat]) + 1) - mm;
+                (self.leaves_at[a][seat] - left_mm * self.less_per_mm[a][seat]).clamp(0.0, 1.0)
             })
         };
         Segment {
@@ -153,199 +199,213 @@ impl Walks {
         }
     }
 
-    /// Writes down the next cells of all rays, leaping over blocks in which nothing shows.
+    /// Walks all rays on by a round. `pass` is given what the rays of some lanes pass at several steps, and the slot of the first
+    /// ray at the first step: that of a ray at a step is its seat, plus the number of seats times the step.
     #[inline(always)]
-    pub(super) fn pass<L: Lanes>(&mut self, occupancy: &Occupancy, passed: &mut Passed) {
-        passed.count = 0;
+    pub(super) fn pass<L: Lanes>(
+        &mut self,
+        occupancy: &Occupancy,
+        mut pass: impl FnMut(&Lines<L>, &[Cells<L>; AHEAD], usize),
+    ) {
         self.settled_mm = self.at_mm;
         for first in (0..RAYS).step_by(L::LANES) {
-            let mut group = Group::<L>::load(self, first);
-            for _ in 0..STEPS {
-                if !group.step(occupancy, passed) {
+            let (lines, mut at) = Lines::<L>::load(self, first);
+            let mut cells = [at; AHEAD];
+            for n in (0..STEPS).step_by(AHEAD) {
+                for passed in &mut cells {
+                    lines.step(&mut at, occupancy);
+                    *passed = at;
+                    lines.go_on(&mut at);
+                }
+                pass(&lines, &cells, first + n * RAYS);
+                if !at.at_mm.lt(lines.exit_mm).any() {
                     break;
                 }
             }
-            group.store(self, first);
+            at.store(self, first);
         }
     }
 }
 
-/// As many rays as a register has lanes.
-struct Group<L: Lanes> {
-    entry: [L::Doubles; 3],
-    per_mm: [L::Doubles; 3],
-    mm_per: [L::Doubles; 3],
-    moves: [L::Mask; 3],
-    falls: [L::Mask; 3],
-    entry_mm: L::Doubles,
-    exit_mm: L::Doubles,
-    at_mm: L::Doubles,
-    /// Where that is, as a continuous index.
-    place: [L::Doubles; 3],
-    until_mm: L::Doubles,
-    cell: [L::Ints; 3],
+/// Where as many rays as a register has lanes are.
+#[derive(Clone, Copy)]
+pub(super) struct Cells<L: Lanes> {
+    rising: [L::Ints; 3],
     next_mm: [L::Doubles; 3],
-    last_cell: [L::Ints; 3],
-    strides: [L::Ints; 2],
-    seat: L::Ints,
+    /// Which rays pass a cell.
+    pub(super) passes: L::Mask,
+    /// Place in memory of the cell's lower corner.
+    pub(super) base: L::Ints,
+    /// Where rays enter and leave the cell, mm from where they entered the volume.
+    pub(super) at_mm: L::Doubles,
+    pub(super) to_mm: L::Doubles,
 }
 
-impl<L: Lanes> Group<L> {
-    #[inline(always)]
-    fn load(walks: &Walks, first: usize) -> Self {
-        let zero = L::Doubles::splat(0.0);
-        let none = zero.lt(zero);
-        let mut group = Group {
-            entry: [zero; 3],
-            per_mm: [zero; 3],
-            mm_per: [zero; 3],
-            moves: [none; 3],
-            falls: [none; 3],
-            entry_mm: L::Doubles::load(&walks.entry_mm[first..]),
-            exit_mm: L::Doubles::load(&walks.exit_mm[first..]),
-            at_mm: L::Doubles::load(&walks.at_mm[first..]),
-            place: [zero; 3],
-            until_mm: L::Doubles::load(&walks.until_mm[first..]),
-            cell: [L::Ints::splat(0); 3],
-            next_mm: [zero; 3],
-            last_cell: [L::Ints::splat(0); 3],
-            strides: [L::Ints::splat(walks.strides[0]), L::Ints::splat(walks.strides[1])],
-            seat: L::Ints::count() + L::Ints::splat(first as i32),
-        };
-        for a in 0..3 {
-            group.entry[a] = L::Doubles::load(&walks.entry[a][first..]);
-            group.mm_per[a] = L::Doubles::load(&walks.mm_per[a][first..]);
-            let per_mm = L::Doubles::load(&walks.per_mm[a][first..]);
-            group.per_mm[a] = per_mm;
-            let falls: L::Mask = per_mm.lt(zero);
-            group.falls[a] = falls;
-            group.moves[a] = falls.or(zero.lt(per_mm));
-            group.cell[a] = L::Ints::load(&walks.cell[a][first..]);
-            group.next_mm[a] = L::Doubles::load(&walks.next_mm[a][first..]);
-            group.last_cell[a] = L::Ints::splat(walks.last_cell[a]);
-            group.place[a] = group.place(a, group.at_mm);
-        }
-        group
-    }
-
+impl<L: Lanes> Cells<L> {
     #[inline(always)]
     fn store(&self, walks: &mut Walks, first: usize) {
         self.at_mm.store(&mut walks.at_mm[first..]);
-        self.until_mm.store(&mut walks.until_mm[first..]);
+        self.base.store(&mut walks.base[first..]);
         for a in 0..3 {
-            self.cell[a].store(&mut walks.cell[a][first..]);
+            self.rising[a].store(&mut walks.cell[a][first..]);
             self.next_mm[a].store(&mut walks.next_mm[a][first..]);
         }
     }
+}
 
-    /// One cell or one leap further, each ray; false if all have ended.
+/// What does not change along as many rays as a register has lanes.
+pub(super) struct Lines<L: Lanes> {
+    entry: [L::Doubles; 3],
+    per_mm: [L::Doubles; 3],
+    mm_per: [L::Doubles; 3],
+    face_zero_mm: [L::Doubles; 3],
+    leaves_at: [L::Doubles; 3],
+    less_per_mm: [L::Doubles; 3],
+    falls: [L::Mask; 3],
+    last_cell: [L::Ints; 3],
+    strides: [L::Ints; 3],
+    exit_mm: L::Doubles,
+}
+
+impl<L: Lanes> Lines<L> {
     #[inline(always)]
-    fn step(&mut self, occupancy: &Occupancy, passed: &mut Passed) -> bool {
-        let under_way = self.at_mm.lt(self.exit_mm);
-        if !under_way.any() {
-            return false;
-        }
-        let leaps = self.leap(occupancy, under_way);
-        let steps = under_way.and_not(leaps);
-        let [x, y, z] = self.next_mm;
-        let first_mm = x.min(y).min(z);
-        let across_x = x.le(y).and(x.le(z));
-        let across_y = y.le(z).and_not(across_x);
-        let to_mm = first_mm.min(self.exit_mm);
-        let passes = steps.and(self.at_mm.lt(to_mm));
-        if passes.any() {
-            self.write_down(passes, to_mm, passed);
-        }
-        let goes_on = steps.and(first_mm.lt(self.exit_mm));
-        self.at_mm = L::Doubles::select(passes, to_mm, self.at_mm);
-        self.at_mm = L::Doubles::select(steps.and_not(goes_on), self.exit_mm, self.at_mm);
-        let across = [across_x, across_y, goes_on.and_not(across_x).and_not(across_y)];
+    fn load(walks: &Walks, first: usize) -> (Self, Cells<L>) {
+        let (zero, nothing) = (L::Doubles::splat(0.0), L::Ints::splat(0));
+        let none = nothing.lt(nothing);
+        let mut lines = Lines {
+            entry: [zero; 3],
+            per_mm: [zero; 3],
+            mm_per: [zero; 3],
+            face_zero_mm: [zero; 3],
+            leaves_at: [zero; 3],
+            less_per_mm: [zero; 3],
+            falls: [none; 3],
+            last_cell: [nothing; 3],
+            strides: [nothing; 3],
+            exit_mm: L::Doubles::load(&walks.exit_mm[first..]),
+        };
+        let mut cells = Cells {
+            rising: [nothing; 3],
+            next_mm: [zero; 3],
+            passes: none,
+            base: L::Ints::load(&walks.base[first..]),
+            at_mm: L::Doubles::load(&walks.at_mm[first..]),
+            to_mm: zero,
+        };
         for a in 0..3 {
-            let moved = goes_on.and(across[a]);
-            let one = L::Ints::select(self.falls[a], L::Ints::splat(-1), L::Ints::splat(1));
-            self.cell[a] = L::Ints::select(moved, self.cell[a] + one, self.cell[a]);
-            self.next_mm[a] = L::Doubles::select(moved, self.face_mm(a), self.next_mm[a]);
+            lines.entry[a] = L::Doubles::load(&walks.entry[a][first..]);
+            lines.per_mm[a] = L::Doubles::load(&walks.per_mm[a][first..]);
+            lines.mm_per[a] = L::Doubles::load(&walks.mm_per[a][first..]);
+            lines.face_zero_mm[a] = L::Doubles::load(&walks.face_zero_mm[a][first..]);
+            lines.leaves_at[a] = L::Doubles::load(&walks.leaves_at[a][first..]);
+            lines.less_per_mm[a] = L::Doubles::load(&walks.less_per_mm[a][first..]);
+            lines.falls[a] = L::Ints::load(&walks.falls[a][first..]).lt(nothing);
+            lines.last_cell[a] = L::Ints::load(&walks.last_cell[a][first..]);
+            lines.strides[a] = L::Ints::load(&walks.strides[a][first..]);
+            cells.rising[a] = L::Ints::load(&walks.cell[a][first..]);
+            cells.next_mm[a] = L::Doubles::load(&walks.next_mm[a][first..]);
         }
-        true
+        (lines, cells)
+    }
+
+    /// Leaps, and finds where rays leave the cells they have come to.
+    #[inline(always)]
+    fn step(&self, at: &mut Cells<L>, occupancy: &Occupancy) {
+        let none = at.at_mm.lt(at.at_mm);
+        let (mut leapt, mut leaps) = (none, none);
+        for _ in 0..LEAPS {
+            leaps = self.leap(at, occupancy);
+            leapt = leapt.or(leaps);
+            if !leaps.any() {
+                break;
+            }
+        }
+        if leapt.any() {
+            self.land(at, leapt);
+        }
+        let [x, y, z] = at.next_mm;
+        let to_mm = x.min(y).min(z).min(self.exit_mm);
+        // Where rays are that have just leapt is not known yet; they stay there.
+        at.to_mm = L::Doubles::select(leaps, at.at_mm, to_mm);
+        at.passes = at.at_mm.lt(at.to_mm);
+    }
+
+    /// Goes on to the next cells.
+    #[inline(always)]
+    fn go_on(&self, at: &mut Cells<L>) {
+        let goes_on = at.to_mm.lt(self.exit_mm);
+        for a in 0..3 {
+            // Across an edge or a corner, along several axes at once.
+            let moved = goes_on.and(at.next_mm[a].le(at.to_mm));
+            at.rising[a] = L::Ints::select(moved, at.rising[a] + L::Ints::splat(1), at.rising[a]);
+            at.base = L::Ints::select(moved, at.base + self.strides[a], at.base);
+            let next_mm = self.crossing_mm(a, at.rising[a] + L::Ints::splat(1));
+            at.next_mm[a] = L::Doubles::select(moved, next_mm, at.next_mm[a]);
+        }
+        at.at_mm = at.at_mm.max(at.to_mm);
     }
 
     /// Leaps over the empty cubes that rays have come to; says which did.
     #[inline(always)]
-    fn leap(&mut self, occupancy: &Occupancy, under_way: L::Mask) -> L::Mask {
-        let arrives = under_way.and(self.until_mm.le(self.at_mm));
-        let none = under_way.and_not(under_way);
-        if !arrives.any() {
-            return none;
+    fn leap(&self, at: &mut Cells<L>, occupancy: &Occupancy) -> L::Mask {
+        let log2_cells = occupancy.around::<L>(self.cell(at));
+        let is_empty = L::Ints::splat(0).lt(log2_cells).and(at.at_mm.lt(self.exit_mm));
+        if !is_empty.any() {
+            return is_empty;
         }
-        let (log2_cells, is_empty) = occupancy.around::<L>(self.cell);
         let mut leaves_mm = self.exit_mm;
         for a in 0..3 {
-            let low = self.cell[a].without_low_bits(log2_cells);
-            let face = L::Ints::select(self.falls[a], low, low + log2_cells.power_of_two());
-            let nearer = leaves_mm.min(self.crossing_mm(a, face));
-            leaves_mm = L::Doubles::select(self.moves[a], nearer, leaves_mm);
+            let face = at.rising[a].without_low_bits(log2_cells) + log2_cells.power_of_two();
+            leaves_mm = leaves_mm.min(self.crossing_mm(a, face));
         }
-        let leaps = arrives.and(is_empty).and(self.at_mm.lt(leaves_mm));
-        self.until_mm = L::Doubles::select(arrives.and_not(leaps), leaves_mm, self.until_mm);
-        if leaps.any() {
-            self.at_mm = L::Doubles::select(leaps, leaves_mm, self.at_mm);
-            let zero = L::Doubles::splat(0.0);
-            for a in 0..3 {
-                let p = self.place(a, self.at_mm);
-                self.place[a] = L::Doubles::select(leaps, p, self.place[a]);
-                // On a face, the cell that the ray is about to pass: ⌈p⌉ − 1 on the way down.
-                let down = zero - (zero - p).floor() - L::Doubles::splat(1.0);
-                let cell = L::Doubles::select(self.falls[a], down, p.floor()).to_ints();
-                let cell = cell.max(L::Ints::splat(0)).min(self.last_cell[a]);
-                self.cell[a] = L::Ints::select(leaps, cell, self.cell[a]);
-                self.next_mm[a] = L::Doubles::select(leaps, self.face_mm(a), self.next_mm[a]);
-            }
+        let leaps = is_empty.and(at.at_mm.lt(leaves_mm));
+        at.at_mm = L::Doubles::select(leaps, leaves_mm, at.at_mm);
+        for a in 0..3 {
+            let place = self.entry[a] + at.at_mm * self.per_mm[a];
+            let cell = place.floor().to_ints().min(self.last_cell[a]);
+            at.rising[a] = L::Ints::select(leaps, cell, at.rising[a]);
         }
         leaps
     }
 
+    /// Finds what follows from the cells that rays have leapt to.
     #[inline(always)]
-    fn write_down(&mut self, passes: L::Mask, to_mm: L::Doubles, passed: &mut Passed) {
-        let at = passed.count;
-        let (zero, one) = (L::Doubles::splat(0.0), L::Doubles::splat(1.0));
+    fn land(&self, at: &mut Cells<L>, leapt: L::Mask) {
         for a in 0..3 {
-            let cell = L::Doubles::from_ints(self.cell[a]);
-            let there = self.place(a, to_mm);
-            let from = (self.place[a] - cell).max(zero).min(one);
-            let to = (there - cell).max(zero).min(one);
-            self.place[a] = L::Doubles::select(passes, there, self.place[a]);
-            L::from_doubles(from).compress(passes).store(&mut passed.from[a][at..]);
-            L::from_doubles(to).compress(passes).store(&mut passed.to[a][at..]);
-            self.cell[a].compress(passes).store(&mut passed.cell[a][at..]);
+            let next_mm = self.crossing_mm(a, at.rising[a] + L::Ints::splat(1));
+            at.next_mm[a] = L::Doubles::select(leapt, next_mm, at.next_mm[a]);
         }
-        let [i, j, k] = self.cell;
-        let base = i + j * self.strides[0] + k * self.strides[1];
-        base.compress(passes).store(&mut passed.base[at..]);
-        self.seat.compress(passes).store(&mut passed.seat[at..]);
-        L::from_doubles(to_mm - self.at_mm).compress(passes).store(&mut passed.length_mm[at..]);
-        L::from_doubles(to_mm - self.entry_mm).compress(passes).store(&mut passed.exit_mm[at..]);
-        passed.count += passes.bits().count_ones() as usize;
+        let [i, j, k] = self.cell(at);
+        // The strides' sizes, whatever their signs.
+        let [_, row, slab] = self.strides;
+        let (row, slab) = (row.max(L::Ints::splat(0) - row), slab.max(L::Ints::splat(0) - slab));
+        at.base = L::Ints::select(leapt, i + j * row + k * slab, at.base);
     }
 
-    /// A continuous index along an axis.
+    /// The lower corners of cells, voxel indices.
     #[inline(always)]
-    fn place(&self, a: usize, at_mm: L::Doubles) -> L::Doubles {
-        self.entry[a] + (at_mm - self.entry_mm) * self.per_mm[a]
+    pub(super) fn cell(&self, at: &Cells<L>) -> [L::Ints; 3] {
+        let mut cell = at.rising;
+        for a in 0..3 {
+            cell[a] = L::Ints::select(self.falls[a], L::Ints::splat(-1) - cell[a], cell[a]);
+        }
+        cell
     }
 
-    /// Where rays cross a face across an axis on which they move.
+    /// Coordinates in `[0, 1]³` of cells, so many mm from where rays entered the volume.
+    #[inline(always)]
+    pub(super) fn coordinates(&self, cells: &Cells<L>, at_mm: L::Doubles) -> [L; 3] {
+        let mut coordinates = [L::ZERO; 3];
+        for a in 0..3 {
+            let x = self.leaves_at[a] - (cells.next_mm[a] - at_mm) * self.less_per_mm[a];
+            coordinates[a] = L::from_doubles(x).max(L::ZERO).min(L::ONE);
+        }
+        coordinates
+    }
+
+    /// Where rays cross a face across an axis.
     #[inline(always)]
     fn crossing_mm(&self, a: usize, face: L::Ints) -> L::Doubles {
-        self.entry_mm + (L::Doubles::from_ints(face) - self.entry[a]) * self.mm_per[a]
-    }
-
-    /// Where rays leave their cells across an axis; infinite for the border and an axis on which they do not move.
-    #[inline(always)]
-    fn face_mm(&self, a: usize) -> L::Doubles {
-        let (cell, none) = (self.cell[a], L::Ints::splat(0));
-        let border = L::Ints::select(self.falls[a], none, self.last_cell[a]);
-        let face = L::Ints::select(self.falls[a], cell, cell + L::Ints::splat(1));
-        let goes_on = self.moves[a].and_not(cell.eq(border));
-        L::Doubles::select(goes_on, self.crossing_mm(a, face), L::Doubles::splat(f64::INFINITY))
+        self.face_zero_mm[a] + L::Doubles::from_ints(face) * self.mm_per[a]
     }
 }
