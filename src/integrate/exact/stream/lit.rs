@@ -29,21 +29,24 @@ pub(super) struct Allowance {
     pub(super) per_cell: [f32; RAYS],
     /// By seat, the variance of what a piece may miss, over what it absorbs.
     pub(super) variance: [f32; RAYS],
-    /// By seat, the largest standard deviation of what a piece may miss.
-    pub(super) largest: [f32; RAYS],
+    /// By seat, the square of what a piece may miss at most, where it may miss as much by its share of the variance.
+    pub(super) largest_square: [f32; RAYS],
 }
+
+/// The share of the light that pieces may absorb before they may miss less than their share of the variance.
+const LARGEST: f64 = 0.02;
 
 impl Allowance {
     pub(super) fn new(by_absorption: f64) -> Self {
         let by_absorption = by_absorption as f32;
         let none = [0.0; RAYS];
-        Allowance { by_absorption, per_mm: none, per_cell: none, variance: none, largest: none }
+        Allowance { by_absorption, per_mm: none, per_cell: none, variance: none, largest_square: none }
     }
 
     /// Shares out what may be missed behind this transmittance.
     pub(super) fn estimate(&mut self, seat: usize, estimate: &Estimate, transmittance: f64) {
         self.variance[seat] = (estimate.variance() / transmittance) as f32;
-        self.largest[seat] = (estimate.largest() / transmittance) as f32;
+        self.largest_square[seat] = (LARGEST * estimate.variance() / (transmittance * transmittance)) as f32;
     }
 }
 

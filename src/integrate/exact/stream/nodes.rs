@@ -31,13 +31,15 @@ const WEIGHTS: [f64; NODES] = [
 const SHIFT_PER_DEPTH: f64 = 1e-6;
 const LARGEST_SHIFT: f64 = 0.06;
 
-/// Standard deviations of what the rule misses, over the turn of the normal from node to node, `Σ 1 − cos`, and over the cosines
-/// on both sides of a kink: measured on cubics with random coefficients, to which the tests below hold them. Two-sided, they are up to half as
-/// large again.
-const OF_LAMBERT: f64 = 0.005;
-const OF_GLOSS: f64 = 0.002;
-const OF_SHININESS: f64 = 0.0005;
-const OF_KINK: f64 = 0.02;
+/// Standard deviations of what the rule misses, measured on cells of noisy lattices, to which the tests below hold them. With the
+/// turn of the normal from node to node, `s = Σ 1 − cos`, Lambert's term misses `a s + b s²`, and more where a light changes sides,
+/// over the cosines on both; a highlight of exponent `p` misses `c p s²`, but no more than its size allows. Two-sided, all are up
+/// to half as large again.
+const OF_TURN: f64 = 0.002;
+const OF_TURN_SQUARED: f64 = 0.004;
+const OF_KINK: f64 = 0.012;
+const OF_GLOSS: f64 = 0.003;
+const LARGEST_OF_GLOSS: f64 = 0.03;
 
 /// Powers of `u` with which a cubic is summed.
 pub(super) type Powers<L> = [L; 4];
@@ -102,7 +104,13 @@ impl Lighting {
             vanished = vanishes;
         }
         let both = if self.two_sided { 1.5 } else { 1.0 };
-        let by_turn = OF_LAMBERT * self.diffuse + (OF_GLOSS + OF_SHININESS * f64::from(self.shininess)) * self.specular;
+        let of_lambert = both * self.diffuse;
+        let of_gloss = both * self.specular;
+        let square = turn * turn;
+        let smooth = number(OF_TURN * of_lambert) * turn
+            + number(OF_TURN_SQUARED * of_lambert) * square
+            + (number(OF_GLOSS * f64::from(self.shininess) * of_gloss) * square)
+                .min(number(LARGEST_OF_GLOSS * of_gloss));
         for (n, color) in self.colors.iter().enumerate().take(LIGHTS) {
             let mut kink = L::ZERO;
             let mut before = L::ZERO;
@@ -126,8 +134,7 @@ impl Lighting {
                 }
                 before = cosine;
             }
-            let of_light = number(both * by_turn) * turn + number(both * OF_KINK * self.diffuse) * kink;
-            found.deviation += number(brightest(color)) * of_light;
+            found.deviation += number(brightest(color)) * (smooth + number(OF_KINK * of_lambert) * kink);
         }
         found
     }
@@ -274,7 +281,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::math::bernstein::value;
+    use crate::math::bernstein::{trilinear_along, value};
     use crate::scene::{Light, Shading};
 
     fn shading(diffuse: f64, specular: f64, shininess: f64, two_sided: bool) -> Shading {
@@ -302,19 +309,44 @@ mod tests {
         }
     }
 
+    /// Along a random chord of a cell in a lattice of noise on a slope: its gradient by central differences.
+    fn gradient_along(random: &mut impl FnMut() -> f64, noise: f64) -> [Cubic<f64>; 3] {
+        let slope = DVec3::new(random(), random(), random()).normalize();
+        let samples: Vec<f64> = (0..64).map(|_| noise * (random() + random() + random())).collect();
+        let at = |[i, j, k]: [usize; 3]| samples[i + 4 * (j + 4 * k)];
+        let ends = [[random(), random()], [random(), random()]].map(|end| end.map(|x| 0.5 + 0.5 * x));
+        let ([from, to], axis) = ([0.0, 1.0], 2 - (4.0 * (0.5 + 0.5 * random())) as usize % 3);
+        let place = |x: f64, [u, v]: [f64; 2]| {
+            let mut place = [u; 3];
+            place[axis] = x;
+            place[(axis + 1) % 3] = v;
+            place
+        };
+        let (from, to) = (place(from, ends[0]), place(to, ends[1]));
+        each(|a| {
+            let corners: [f64; 8] = each(|c| {
+                let corner = [1 + (c & 1), 1 + (c >> 1 & 1), 1 + (c >> 2)];
+                let (mut below, mut above) = (corner, corner);
+                below[a] -= 1;
+                above[a] += 1;
+                slope[a] + 0.5 * (at(above) - at(below))
+            });
+            trilinear_along(&corners, from, to)
+        })
+    }
+
     /// Root mean squares, over many gradients, of what the nodes of a thin piece miss and of what they are estimated to miss.
-    fn missed_and_estimated(shading: &Shading, roughness: f64) -> [f64; 2] {
+    fn missed_and_estimated(shading: &Shading, noise: f64) -> [f64; 2] {
         let lighting = Lighting::new(shading, 1.0).expect("a light that lanes can have");
         let (mut random, mut squares, count) = (random(), [0.0; 2], 4000);
         let thin = Optics { emission: [[1e-4_f32; 4]; 3], extinction: [1e-4; 4] };
         for _ in 0..count {
-            let mean = DVec3::new(random(), random(), random()).normalize();
-            let g: [Cubic<f64>; 3] = each(|a| each(|_| mean[a] + roughness * (random() + random() + random())));
+            let g = gradient_along(&mut random, noise);
             let single = |a: usize| powers(&g[a].map(|x| x as f32));
             let light = lighting.at_nodes(&[single(0), single(1), single(2)], &lights(shading), [0.0, 1.0]);
             let integral: Integral<f32> = light.finish::<4, 5>(&thin, 1.0);
             let found = f64::from(integral.radiance[0] / integral.absorbed);
-            let steps = 2000;
+            let steps = 1000;
             let at = |k: usize| DVec3::from_array(g.map(|g| value(&g, (k as f64 + 0.5) / f64::from(steps))));
             let truth = (0..steps as usize).map(|k| {
                 let (reflected, highlight) = shading.factors(at(k), RAY);
@@ -334,10 +366,10 @@ mod tests {
                 [(1.0, 0.0, 2.0), (0.7, 0.2, 10.0), (0.0, 1.0, 10.0), (0.0, 1.0, 40.0)]
             {
                 let shading = shading(diffuse, specular, shininess, two_sided);
-                for roughness in [0.1, 0.2, 0.4] {
-                    let [missed, estimated] = missed_and_estimated(&shading, roughness);
-                    let name = format!("{diffuse} {specular} {shininess} two-sided {two_sided}, roughness {roughness}");
-                    assert!(missed < 1.3 * estimated, "{name}: {missed:e} missed, {estimated:e} estimated");
+                for noise in [0.1, 0.2, 0.4] {
+                    let [missed, estimated] = missed_and_estimated(&shading, noise);
+                    let name = format!("{diffuse} {specular} {shininess} two-sided {two_sided}, noise {noise}");
+                    assert!(missed < 1.6 * estimated, "{name}: {missed:e} missed, {estimated:e} estimated");
                     assert!(estimated < 20.0 * missed, "{name}: {missed:e} missed, {estimated:e} estimated");
                 }
             }

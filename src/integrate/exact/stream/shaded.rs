@@ -40,18 +40,10 @@ pub(in crate::integrate::exact) struct Estimate {
 const PROVEN: f64 = 0.6;
 pub(in crate::integrate::exact) const DEVIATIONS: f64 = 4.0;
 
-/// What one piece may miss at most, over the deviation of a ray.
-const LARGEST: f64 = 0.1;
-
 impl Estimate {
     /// The shares of a tolerance.
     pub(in crate::integrate::exact) fn within(tolerance: f64) -> Self {
         Estimate { proven: PROVEN * tolerance, deviation: (1.0 - PROVEN) / DEVIATIONS * tolerance }
-    }
-
-    /// Of one piece, at most: few pieces miss much more than a deviation, but where one piece is all that is seen, few are too many.
-    pub(super) fn largest(&self) -> f64 {
-        LARGEST * self.deviation
     }
 
     pub(super) fn variance(&self) -> f64 {
@@ -67,8 +59,21 @@ struct Sight<L> {
     /// Variance over what a cell absorbs.
     variance: L,
     error_per_mm: L,
-    /// What a piece may miss at most.
-    largest: L,
+    /// Over what a piece may miss by its share of the variance: what it may miss at most.
+    largest_square: L,
+}
+
+/// Small enough for any picture, and large enough for f32 to square.
+const NOTHING: f64 = 1e-12;
+
+impl<L: Lanes> Sight<L> {
+    /// What a piece that absorbs so much may miss, a standard deviation: its share of the variance. Few pieces miss much more than a
+    /// deviation, but where a few pieces are all that is seen, few are too many; so the more is absorbed the less of the share.
+    #[inline(always)]
+    fn may_miss(&self, absorbed: L) -> L {
+        let share = (self.variance * absorbed).sqrt().max(L::from_f64(NOTHING));
+        share.min(self.largest_square / share)
+    }
 }
 
 impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
@@ -94,8 +99,8 @@ impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
             |a| powers(&trilinear_along(&gradients[a], way.from, way.to)),
         );
         let variance = L::pick16(&self.allowance.variance, way.seat);
-        let largest = L::pick16(&self.allowance.largest, way.seat);
-        Sight { gradient, lights, variance, error_per_mm: L::pick16(&self.allowance.per_mm, way.seat), largest }
+        let largest_square = L::pick16(&self.allowance.largest_square, way.seat);
+        Sight { gradient, lights, variance, error_per_mm: L::pick16(&self.allowance.per_mm, way.seat), largest_square }
     }
 
     /// Whether the proven error of a piece of this length is what it may be, its transmittance aside.
@@ -188,7 +193,7 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, [L::ZERO, L::ONE]);
         let mut integral = function.integrate(interval, &fields, length_mm, &light);
         let missed = scenery.missed(&light, &integral);
-        let allowed = (sight.variance * integral.absorbed).sqrt().min(sight.largest);
+        let allowed = sight.may_miss(integral.absorbed);
         let refused = is_cell.and_not(missed.le(allowed).and(scenery.allows(&sight, &integral, length_mm)));
         let mut missed = missed;
         if refused.any() {
@@ -245,7 +250,7 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
             let piece_mm = length_mm * (to - from);
             let piece = function.integrate(interval, &part, piece_mm, &light);
             let missed = transmittance * scenery.missed(&light, &piece);
-            let allowed = (sight.variance * (transmittance * piece.absorbed)).sqrt().min(sight.largest);
+            let allowed = sight.may_miss(transmittance * piece.absorbed);
             let refused = open.and_not(missed.le(allowed).and(scenery.allows(&sight, &piece, piece_mm)));
             if refused.any() {
                 parts.put_off(refused, first, false, [from, to], interval, transmittance, allowed);
