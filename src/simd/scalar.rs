@@ -14,6 +14,10 @@ impl Lanes for f32 {
         doubles as f32
     }
     #[inline(always)]
+    fn gather(from: &[f32], at: i32) -> Self {
+        from[(at as u32 as usize).min(from.len() - 1)]
+    }
+    #[inline(always)]
     fn load(from: &[f32]) -> Self {
         from[0]
     }
@@ -80,6 +84,10 @@ impl Lanes for f32 {
     }
     #[inline(always)]
     fn compress(self, _: bool) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn expand(self, _: bool) -> Self {
         self
     }
 }
@@ -178,6 +186,10 @@ impl Ints for i32 {
         1 << self
     }
     #[inline(always)]
+    fn gather(from: &[i32], at: Self) -> Self {
+        from[(at as u32 as usize).min(from.len() - 1)]
+    }
+    #[inline(always)]
     fn bytes(from: &[u8], at: Self) -> Self {
         i32::from(from[(at as u32 as usize).min(from.len() - 4)])
     }
@@ -195,6 +207,10 @@ impl Ints for i32 {
     }
     #[inline(always)]
     fn compress(self, _: bool) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn expand(self, _: bool) -> Self {
         self
     }
 }
