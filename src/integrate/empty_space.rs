@@ -89,6 +89,13 @@ impl EmptySpace {
         Leap { active: distance == 0, samples }
     }
 
+    /// Whether something may show in the block that holds the cell with this lower corner.
+    #[inline(always)]
+    pub(super) fn is_active(&self, corner: [i32; 3]) -> bool {
+        let [i, j, k] = corner.map(|x| x as usize >> self.log2_cells);
+        self.distance[i + self.blocks[0] * (j + self.blocks[1] * k)] == 0
+    }
+
     /// The blocks of cells with these lower corners: base-2 logarithm of the cells per axis of a block; how many blocks to
     /// either side, the one in the middle included, are known to be like it; and which of them are active.
     #[inline(always)]

@@ -1,11 +1,14 @@
 //! Marching with many rays side by side: the kernel of most pictures, front to back.
 //!
-//! The lanes of a register are rays of a tile, each at a sample of its own ([`walk`]). A ray runs through a block in which
-//! something may show sample by sample, and leaps over the others; as soon as a few rays have no run, all those look around at
-//! once, and whoever has come to the end makes room for the next one. So nearly all lanes take samples that count, nearly all the time.
+//! A tile is marched in three steps. Its rays are cut into pieces of equal steps ([`pieces`]). All pieces look around, as many at once
+//! as a register has lanes, and note their runs of samples through blocks in which something may show ([`runs`]). Then the lanes of two
+//! registers walk, each along a piece of its own and at a sample of its own ([`walk`], [`place`]); who comes to the end of a run goes on
+//! to the next, and who has none left makes room for the next piece. So nearly all lanes take samples that may count, nearly all the
+//! time. What a sample adds is summed per lane ([`light`]) or, shaded, by the register of samples in which something shows ([`visible`]).
 //!
-//! A ray is cut into pieces of equal steps ([`pieces`]), which are marched in any order and composited in theirs. What a piece adds
-//! depends on nothing but the piece ([`light`]), so a picture has the same bits on every processor and for any number of threads.
+//! The pieces of a ray are marched in any order and composited in theirs. What a piece adds depends on nothing but the piece, and where
+//! a sample is on nothing but its number, so a picture has the same bits on every processor, for any number of threads, and with
+//! leaps or without.
 
 mod light;
 mod pieces;
@@ -134,6 +137,12 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Tile<'_, '_, V, C, S> {
             met.push((n, pieces.count));
             for stretch in stretches.iter().filter(|stretch| stretch.samples > 0) {
                 pieces.add(&chord, stretch, self.kernel.field.dims());
+                // Lanes are for pieces of some length; most single samples at the border show nothing.
+                let is_empty = |space: &EmptySpace| !space.is_active(pieces.last_corner());
+                if stretch.samples == 1 && self.kernel.empty_space.as_ref().is_some_and(is_empty) {
+                    pieces.take_back();
+                    continue;
+                }
                 for (light, half) in self.kernel.shader.half_vectors(ray.direction).enumerate() {
                     halves.add(light, half);
                 }
@@ -200,6 +209,7 @@ impl<L: Lanes> Group<L> {
     fn attend<S: LaneShader>(&mut self, pieces: &Pieces, next: &mut usize, lights: &mut [Radiance]) -> bool {
         let Group { walk, light } = self;
         let active = walk.active();
+        // Few idle lanes cost less than looking after them.
         if count::<L>(active) >= L::LANES - L::LANES / 8 {
             return true;
         }

@@ -3,6 +3,7 @@
 use crate::field::Chord;
 use crate::integrate::march::lattice::Stretch;
 use crate::integrate::tiles::TILE_PIXELS;
+use crate::math::each;
 use crate::simd::BATCH;
 
 /// Pieces of a ray whose samples stand for an interval each: the first interval, the last one, and those between.
@@ -16,9 +17,6 @@ pub(super) const RUNS: usize = 16;
 
 /// Most samples of a piece: 2⁻³² voxels of rounding, so many times, are 10⁻⁵ voxels.
 pub(super) const MOST_SAMPLES: f64 = 65_000.0;
-
-/// Reciprocal of a step along an axis on which a ray does not move: leaps are never as long.
-const NEVER: f32 = 1e30;
 
 /// Added to a fraction, so that comparing signed integers compares fractions.
 const BIAS: u32 = 1 << 31;
@@ -35,8 +33,6 @@ pub(super) struct Pieces {
     pub(super) step: [[i32; ROOM]; 3],
     /// What was rounded off, 2⁻³² voxels, unsigned.
     pub(super) step_fraction: [[i32; ROOM]; 3],
-    /// Steps per voxel, whatever the direction.
-    pub(super) per_voxel: [[f32; ROOM]; 3],
     /// Samples; after a look around, of its first run.
     pub(super) samples: [i32; ROOM],
     /// The length that each sample stands for.
@@ -55,7 +51,6 @@ impl Pieces {
             fraction: [[0; ROOM]; 3],
             step: [[0; ROOM]; 3],
             step_fraction: [[0; ROOM]; 3],
-            per_voxel: [[0.0; ROOM]; 3],
             samples: [0; ROOM],
             delta_mm: [0.0; ROOM],
             number: [0; ROOM],
@@ -68,20 +63,37 @@ impl Pieces {
     pub(super) fn add(&mut self, chord: &Chord, stretch: &Stretch, dims: [usize; 3]) {
         let at = self.count;
         self.count += 1;
-        let (first, last) = (chord.index_at(stretch.first_mm), chord.index_at(stretch.last_mm));
-        let per_interval = 1.0 / (stretch.samples.max(2) - 1) as f64;
+        let first = chord.index_at(stretch.first_mm);
         for a in 0..3 {
-            let [first, last] = [fixed(first[a], dims[a]), fixed(last[a], dims[a])];
-            let step = step((last - first) as f64, per_interval);
+            let first = fixed(first[a], dims[a]);
             self.corner[a][at] = (first >> 32) as i32;
             self.fraction[a][at] = (first as u32 ^ BIAS) as i32;
-            self.step[a][at] = (step >> 32) as i32;
-            self.step_fraction[a][at] = step as u32 as i32;
-            self.per_voxel[a][at] = if step == 0 { NEVER } else { ((1u64 << 32) as f64 / step.abs() as f64) as f32 };
+            (self.step[a][at], self.step_fraction[a][at]) = (0, 0);
+        }
+        if stretch.samples > 1 {
+            let last = chord.index_at(stretch.last_mm);
+            let per_interval = 1.0 / (stretch.samples - 1) as f64;
+            for a in 0..3 {
+                let step = step((fixed(last[a], dims[a]) - fixed(first[a], dims[a])) as f64, per_interval);
+                self.step[a][at] = (step >> 32) as i32;
+                self.step_fraction[a][at] = step as u32 as i32;
+            }
         }
         self.samples[at] = stretch.samples as i32;
         self.delta_mm[at] = stretch.delta_mm as f32;
         self.number[at] = at as i32;
+    }
+
+    /// The corner of the cell of the first sample of the last piece.
+    #[inline(always)]
+    pub(super) fn last_corner(&self) -> [i32; 3] {
+        each(|a| self.corner[a][self.count - 1])
+    }
+
+    /// Takes the last piece away.
+    #[inline(always)]
+    pub(super) fn take_back(&mut self) {
+        self.count -= 1;
     }
 }
 

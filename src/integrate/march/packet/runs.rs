@@ -53,17 +53,13 @@ impl<L: Lanes> Search<L> {
     fn new(pieces: &Pieces, first: usize, count: usize) -> Self {
         let none = L::Ints::splat(0);
         let place = Place::load(pieces, first);
-        let mut per_voxel = [L::ZERO; 3];
-        for a in 0..3 {
-            per_voxel[a] = L::load(&pieces.per_voxel[a][first..]);
-        }
         let is_there = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(count as i32));
         let number = L::Ints::load(&pieces.number[first..]);
         let at = number * L::Ints::splat(RUNS as i32);
         Search {
             place,
             start: place,
-            per_voxel,
+            per_voxel: place.steps_per_voxel(),
             rest: L::Ints::select(is_there, L::Ints::load(&pieces.samples[first..]), none),
             gap: none,
             run: none,
@@ -167,5 +163,127 @@ pub(super) fn for_each(mask: impl Mask, mut call: impl FnMut(usize)) {
     while bits != 0 {
         call(bits.trailing_zeros() as usize);
         bits &= bits - 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::classify::{Baked, bake};
+    use crate::field::{BlockRanges, Chord, Trilinear};
+    use crate::integrate::march::lattice::Stretch;
+    use crate::simd::{self, Level};
+    use crate::transfer::{Curve, Knot, Optics, Term, TransferFunction};
+    use crate::volume::Rescale;
+    use glam::DVec3;
+
+    const DIMS: [usize; 3] = [61, 47, 39];
+
+    /// Something shows around a few voxels.
+    fn space() -> EmptySpace {
+        let mut samples = vec![0i16; DIMS.iter().product()];
+        for n in 0..40 {
+            let [i, j, k] = [n * 37 % DIMS[0], n * 53 % DIMS[1], n * 29 % DIMS[2]];
+            samples[i + DIMS[0] * (j + DIMS[1] * k)] = 100;
+        }
+        let knot = |value, extinction| Knot { value, optics: Optics::colored(extinction, [1.0; 3]) };
+        let curve = Curve::new(vec![knot(50.0, 0.0), knot(100.0, 1.0)]).unwrap();
+        let function = TransferFunction::new([-200.0, 200.0], 1.0, vec![Term { curve, weight: None }]).unwrap();
+        let Baked::OneD(classifier) = bake::<f32>(&function, Rescale::IDENTITY) else {
+            unreachable!("of the value alone")
+        };
+        EmptySpace::new(&BlockRanges::<2>::new(&Trilinear::new(&samples, DIMS).unwrap()), None, &classifier)
+    }
+
+    fn pieces(count: usize) -> Box<Pieces> {
+        let mut pieces = Box::new(Pieces::new());
+        for n in 0..count {
+            let u = |k: f64| (n as f64 * k + 0.29).fract();
+            let end = DVec3::from_array(DIMS.map(|n| (n - 1) as f64));
+            let from = end * DVec3::new(u(0.618), u(0.414), u(0.732));
+            let to = end * DVec3::new(u(0.271), u(0.828), if n % 3 == 0 { u(0.732) } else { u(0.577) });
+            let chord = Chord { entry_mm: 0.0, length_mm: 1.0, entry_index: from, index_per_mm: to - from };
+            let samples = [1, 90, 700][n % 3];
+            pieces.add(&chord, &Stretch { first_mm: 0.0, last_mm: 1.0, samples, delta_mm: 1.0 }, DIMS);
+        }
+        pieces
+    }
+
+    /// Finds the runs of pieces: for each piece, which of its samples are in one.
+    struct Found<'s>(&'s EmptySpace, usize);
+
+    impl simd::Kernel for Found<'_> {
+        type Output = Vec<Vec<bool>>;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let mut pieces = pieces(self.1);
+            let samples = pieces.samples;
+            let starts = Starts::of(&pieces, self.1);
+            let mut found: Vec<Vec<bool>> = (0..self.1).map(|n| vec![false; samples[n] as usize]).collect();
+            find::<L>(&mut pieces, Some(self.0));
+            for at in 0..pieces.count {
+                let number = pieces.number[at] as usize;
+                let start = [0, 1, 2].map(|a| (pieces.corner[a][at], pieces.fraction[a][at]));
+                let mut sample = starts.number_of(number, start);
+                let mut run = pieces.samples[at];
+                for next in number * RUNS.. {
+                    found[number][sample..][..run as usize].fill(true);
+                    sample += run as usize;
+                    let word = pieces.runs[next];
+                    if word == 0 {
+                        break;
+                    }
+                    sample += (word >> 16 & 0xffff) as usize;
+                    run = word & 0xffff;
+                }
+            }
+            found
+        }
+    }
+
+    /// Where all samples are.
+    struct Starts(Vec<Vec<[(i32, i32); 3]>>);
+
+    impl Starts {
+        fn of(pieces: &Pieces, count: usize) -> Self {
+            let along = |n: usize| {
+                let mut place = Place::<f32>::load(pieces, n);
+                let here = move |_| {
+                    let here = [0, 1, 2].map(|a| (place.corner[a], place.fraction[a]));
+                    place.advance(true);
+                    here
+                };
+                (0..pieces.samples[n]).map(here).collect()
+            };
+            Starts((0..count).map(along).collect())
+        }
+
+        fn number_of(&self, piece: usize, start: [(i32, i32); 3]) -> usize {
+            self.0[piece].iter().position(|&place| place == start).expect("a run begins at a sample")
+        }
+    }
+
+    #[test]
+    fn every_sample_in_an_active_block_is_in_a_run_and_few_others_are() {
+        let space = space();
+        let count = 300;
+        let starts = Starts::of(&pieces(count), count);
+        let expected: Vec<Vec<bool>> = starts
+            .0
+            .iter()
+            .map(|all| all.iter().map(|p| space.is_active(p.map(|(corner, _)| corner))).collect())
+            .collect();
+        for level in Level::ALL {
+            let found = level.run(Found(&space, count));
+            let (mut more, mut shown) = (0, 0);
+            for (n, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                let missed = found.iter().zip(expected).position(|(&found, &expected)| expected && !found);
+                assert_eq!(missed, None, "{level}: a sample of piece {n} is in no run");
+                more += found.iter().zip(expected).filter(|&(&found, &expected)| found && !expected).count();
+                shown += expected.iter().filter(|&&shows| shows).count();
+            }
+            assert!(shown > 5000 && more * 20 < shown, "{level}: {more} samples in vain beside {shown}");
+        }
     }
 }
