@@ -169,7 +169,7 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> simd::Kernel for Flight
         let Scratch { pieces, lights, halves, visible, .. } = scratch;
         let kernel = tile.kernel;
         runs::find::<L>(pieces, kernel.empty_space.as_ref());
-        let mut groups = [const { () }; GROUPS].map(
+        let mut groups = [(); GROUPS].map(
             #[inline(always)]
             |()| Group::<L> { walk: Walk::new(), light: Light::new() },
         );
