@@ -10,7 +10,9 @@ from . import scenes
 from .programs import VtkFrames, read_samples
 
 EXACT = "{ exact: { tolerance: 1/255 } }"
-MARCH = "{ march: { step_voxels: 1/2 } }"
+# VTK's CPU mapper stops a ray where less than 255 of 32767 parts, 0.78 %, get through. A fourth of that costs no visible accuracy,
+# and less than VTK gives away.
+MARCH = "{ march: { step_voxels: 1/2, termination_transmittance: 1/512 } }"
 METHODS = (("exact", EXACT), ("march", MARCH))
 # Width of the pictures whose every pixel is held against the oracle.
 TRUTH_SIZE = 192

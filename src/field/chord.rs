@@ -24,6 +24,7 @@ impl Chord {
     ///
     /// Slabs (Kay and Kajiya 1986) in index space, where the domain is a box whatever the shear. An axis the ray does not
     /// move on is a test of its own, so that 0 · ∞ cannot arise.
+    #[inline(always)]
     pub fn new(grid: &Grid, clip: &Clip, ray: Ray) -> Option<Self> {
         let to_index = grid.lps_mm_to_index();
         let origin = to_index.transform_point3(ray.origin_mm);
@@ -81,6 +82,7 @@ impl Chord {
     }
 
     /// Continuous voxel index at a distance from the entry.
+    #[inline(always)]
     pub fn index_at(&self, mm: f64) -> DVec3 {
         self.entry_index + mm * self.index_per_mm
     }

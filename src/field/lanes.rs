@@ -3,7 +3,7 @@
 
 use super::{Batch, Trilinear, Voxel};
 use crate::math::Number;
-use crate::simd::{Ints, Lanes, Pairs};
+use crate::simd::{Ints, Lanes, Mask, Pairs};
 
 /// The cells of some samples of a batch, on even slices.
 #[derive(Clone, Copy)]
@@ -52,6 +52,27 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
             base = base + corner[a] * L::Ints::splat(self.strides[a] as i32);
         }
         Cells { base, corner, fraction }
+    }
+
+    /// The cells with these lower corners, and where in them: 0 to 1 of each axis.
+    #[inline(always)]
+    pub(crate) fn cells_at<L: Lanes>(&self, corner: [L::Ints; 3], fraction: [L; 3]) -> Cells<L> {
+        let mut base = L::Ints::splat(0);
+        for (corner, &stride) in corner.iter().zip(&self.strides) {
+            base = base + *corner * L::Ints::splat(stride as i32);
+        }
+        Cells { base, corner, fraction }
+    }
+
+    /// Which cells are not at the border, where gradients are one-sided.
+    #[inline(always)]
+    pub(crate) fn are_inside<L: Lanes>(&self, cells: &Cells<L>) -> L::Mask {
+        let mut inside = <L::Mask as Mask>::ALL;
+        for a in 0..3 {
+            let end = L::Ints::splat(self.dims[a] as i32 - 2);
+            inside = inside.and(L::Ints::splat(0).lt(cells.corner[a])).and(cells.corner[a].lt(end));
+        }
+        inside
     }
 
     /// Distances in memory, of all lanes, to the next lines along j, along k, and along both.

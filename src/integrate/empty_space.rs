@@ -7,13 +7,17 @@
 use rayon::prelude::*;
 
 use super::march::ByPlace;
-use crate::field::{BLOCK_CELLS, Macrocells, Pace, Position};
+use crate::field::{BLOCK_CELLS, BlockRanges, Macrocells, Pace, Position};
+use crate::simd::{Ints, Lanes};
 
 /// Distances to the nearest active block.
 #[derive(Debug, Clone)]
 pub(super) struct EmptySpace {
     blocks: [usize; 3],
-    /// 0 for an active block; `d` if all blocks nearer than `d` are empty.
+    /// Base-2 logarithm of the cells per axis of a block.
+    log2_cells: u32,
+    /// 0 for an active block; `d` if all blocks nearer than `d` are empty. Three bytes more than blocks, so that four can be
+    /// read at any of them.
     distance: Vec<u8>,
 }
 
@@ -26,20 +30,24 @@ pub(super) struct Leap {
 
 impl EmptySpace {
     /// The blocks in which this transfer function shows something.
-    pub(super) fn new<C: ByPlace>(values: &Macrocells, magnitudes: Option<&Macrocells>, classifier: &C) -> Self {
+    pub(super) fn new<const LOG2: u32, C: ByPlace>(
+        values: &BlockRanges<LOG2>,
+        magnitudes: Option<&BlockRanges<LOG2>>,
+        classifier: &C,
+    ) -> Self {
         let active: Vec<bool> = (0..values.ranges().len())
             .map(|b| {
                 let magnitude = magnitudes.map_or([0.0; 2], |m| m.ranges()[b]);
                 !classifier.is_empty_in(b, widened(values.ranges()[b]), widened(magnitude))
             })
             .collect();
-        EmptySpace::from_active(values.blocks(), &active)
+        EmptySpace::from_active(values.blocks(), LOG2, &active)
     }
 
     /// The blocks of which `is_active` holds, given the range of their values with what rounding makes of it.
     pub(super) fn by_values(values: &Macrocells, is_active: impl Fn([f32; 2]) -> bool) -> Self {
         let active: Vec<bool> = values.ranges().iter().map(|&range| is_active(widened(range))).collect();
-        EmptySpace::from_active(values.blocks(), &active)
+        EmptySpace::from_active(values.blocks(), Macrocells::LOG2_CELLS, &active)
     }
 
     /// The blocks of a lattice in which some voxel shows something, those on their upper faces included: what is
@@ -54,32 +62,53 @@ impl EmptySpace {
             voxels(k, 2).any(|z| voxels(j, 1).any(|y| voxels(i, 0).any(|x| is_lit(line(y, z) + x))))
         };
         let active: Vec<bool> = (0..blocks.iter().product()).into_par_iter().map(is_active).collect();
-        EmptySpace::from_active(blocks, &active)
+        EmptySpace::from_active(blocks, Macrocells::LOG2_CELLS, &active)
     }
 
-    fn from_active(blocks: [usize; 3], active: &[bool]) -> Self {
+    fn from_active(blocks: [usize; 3], log2_cells: u32, active: &[bool]) -> Self {
         let mut distance: Vec<u8> = active.iter().map(|&a| if a { 0 } else { u8::MAX }).collect();
         // Chessboard distance in two passes over the neighbours already seen (Rosenfeld and Pfaltz 1966).
-        let count = distance.len();
-        for b in 0..count {
-            distance[b] = nearest(&distance, blocks, b, -1);
-        }
-        for b in (0..count).rev() {
-            distance[b] = nearest(&distance, blocks, b, 1);
-        }
-        EmptySpace { blocks, distance }
+        let mut rows = Rows::new(blocks, &mut distance);
+        let [_, ny, nz] = blocks.map(|n| n as isize);
+        let in_order = |row: isize| [row % ny, row / ny];
+        (0..ny * nz).map(in_order).for_each(|[j, k]| rows.lower(j, k, 1));
+        (0..ny * nz).rev().map(in_order).for_each(|[j, k]| rows.lower(j, k, -1));
+        distance.extend([0; 3]);
+        EmptySpace { blocks, log2_cells, distance }
     }
 
     /// How many samples at this pace, from `position` on, are in active blocks, or surely in empty ones.
     #[inline(always)]
     pub(super) fn leap(&self, position: Position, pace: &Pace) -> Leap {
-        let [i, j, k] = position.block(Macrocells::LOG2_CELLS);
+        let [i, j, k] = position.block(self.log2_cells);
         let distance = self.distance[i + self.blocks[0] * (j + self.blocks[1] * k)];
         let reach = i64::from(distance.max(1));
-        let cells = |block: i64| block << Macrocells::LOG2_CELLS;
+        let cells = |block: i64| block << self.log2_cells;
         let block = [i as i64, j as i64, k as i64];
         let samples = position.steps_within(pace, block.map(|b| cells(b + 1 - reach)), block.map(|b| cells(b + reach)));
         Leap { active: distance == 0, samples }
+    }
+
+    /// Whether something may show in the block that holds the cell with this lower corner.
+    #[inline(always)]
+    pub(super) fn is_active(&self, corner: [i32; 3]) -> bool {
+        let [i, j, k] = corner.map(|x| x as usize >> self.log2_cells);
+        self.distance[i + self.blocks[0] * (j + self.blocks[1] * k)] == 0
+    }
+
+    /// The blocks of cells with these lower corners: base-2 logarithm of the cells per axis of a block; how many blocks to
+    /// either side, the one in the middle included, are known to be like it; and which of them are active.
+    #[inline(always)]
+    pub(super) fn beside<L: Lanes>(&self, [i, j, k]: [L::Ints; 3]) -> (u32, L::Ints, L::Mask) {
+        let [nx, ny, _] = self.blocks;
+        let (row, slab) = (L::Ints::splat(nx as i32), L::Ints::splat((nx * ny) as i32));
+        let block = [i, j, k].map(
+            #[inline(always)]
+            |x| x.shifted_right(self.log2_cells),
+        );
+        let distance = L::Ints::bytes(&self.distance, block[0] + block[1] * row + block[2] * slab);
+        let one = L::Ints::splat(1);
+        (self.log2_cells, distance.max(one), distance.lt(one))
     }
 }
 
@@ -89,27 +118,56 @@ pub(super) fn widened([low, high]: [f32; 2]) -> [f32; 2] {
     [low - margin, high + margin]
 }
 
-/// The distance of block `b` by way of those neighbours that come before it (`side` -1) or after it (1) in memory.
-fn nearest(distance: &[u8], blocks: [usize; 3], b: usize, side: isize) -> u8 {
-    let [nx, ny, _] = blocks;
-    let at = [b % nx, b / nx % ny, b / (nx * ny)];
-    let mut least = distance[b];
-    for dk in -1..=1 {
-        for dj in -1..=1 {
-            for di in -1..=1 {
-                let offset = [di, dj, dk];
-                let neighbour: [Option<usize>; 3] =
-                    std::array::from_fn(|a| at[a].checked_add_signed(offset[a]).filter(|&x| x < blocks[a]));
-                let [Some(i), Some(j), Some(k)] = neighbour else { continue };
-                let n = i + nx * (j + ny * k);
-                let seen = if side < 0 { n < b } else { n > b };
-                if seen {
-                    least = least.min(distance[n].saturating_add(1));
-                }
+/// Distances, row by row of blocks along i.
+struct Rows<'d> {
+    blocks: [usize; 3],
+    distance: &'d mut [u8],
+    /// The least distances of the rows beside the one that is lowered.
+    beside: Vec<u8>,
+}
+
+impl<'d> Rows<'d> {
+    fn new(blocks: [usize; 3], distance: &'d mut [u8]) -> Self {
+        Rows { blocks, distance, beside: vec![0; blocks[0]] }
+    }
+
+    fn row(&self, j: isize, k: isize) -> Option<std::ops::Range<usize>> {
+        let [nx, ny, nz] = self.blocks;
+        let (j, k) = (usize::try_from(j).ok().filter(|&j| j < ny)?, usize::try_from(k).ok().filter(|&k| k < nz)?);
+        let first = nx * (j + ny * k);
+        Some(first..first + nx)
+    }
+
+    /// Lowers the distances of a row to one more than those of the neighbours that come before in this direction, whole rows at a
+    /// time as far as that is possible.
+    fn lower(&mut self, j: isize, k: isize, direction: isize) {
+        let Some(row) = self.row(j, k) else { return };
+        self.beside.fill(u8::MAX);
+        for [dj, dk] in [[-1, 0], [-1, -1], [0, -1], [1, -1]] {
+            let Some(before) = self.row(j + dj * direction, k + dk * direction) else { continue };
+            for (least, &d) in self.beside.iter_mut().zip(&self.distance[before]) {
+                *least = (*least).min(d);
             }
         }
+        let row = &mut self.distance[row];
+        let across = [&self.beside[1..], &self.beside[..self.beside.len() - 1]];
+        lower(row, &self.beside);
+        lower(row, across[0]);
+        lower(&mut row[1..], across[1]);
+        let mut before = u8::MAX;
+        let mut next = |d: &mut u8| {
+            *d = (*d).min(before.saturating_add(1));
+            before = *d;
+        };
+        if direction > 0 { row.iter_mut().for_each(&mut next) } else { row.iter_mut().rev().for_each(&mut next) }
     }
-    least
+}
+
+/// Lowers distances to one more than those of neighbours.
+fn lower(distance: &mut [u8], neighbours: &[u8]) {
+    for (d, &n) in distance.iter_mut().zip(neighbours) {
+        *d = (*d).min(n.saturating_add(1));
+    }
 }
 
 #[cfg(test)]
@@ -125,7 +183,7 @@ mod tests {
         for [i, j, k] in lit {
             active[i + 9 * (j + 7 * k)] = true;
         }
-        let space = EmptySpace::from_active(blocks, &active);
+        let space = EmptySpace::from_active(blocks, 3, &active);
         for b in 0..active.len() {
             let at = [b % 9, b / 9 % 7, b / 63];
             let to = |l: [usize; 3]| (0..3).map(|a| at[a].abs_diff(l[a])).max().unwrap();
@@ -139,7 +197,7 @@ mod tests {
         let blocks = [9, 7, 5];
         let mut active = vec![false; 9 * 7 * 5];
         active[4 + 9 * (3 + 7 * 2)] = true;
-        let space = EmptySpace::from_active(blocks, &active);
+        let space = EmptySpace::from_active(blocks, 3, &active);
         let dims = blocks.map(|n| n * 8 + 1);
         let mut leapt = 0;
         for i in 0..500 {

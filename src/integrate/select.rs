@@ -3,22 +3,33 @@
 use super::atmosphere::Atmosphere;
 use super::classify_voxels::classify_voxels;
 use super::empty_space::EmptySpace;
-use super::march::{AtVoxels, ByLanes, ByPlace, Classified, Kernel, LevelChanges, Masked, Medium, OneByOne, VtkPhong};
+use super::march::{
+    AtVoxels, ByLanes, ByPlace, Classified, Kernel, LevelChanges, Masked, Medium, OneByOne, Packets, VtkPhong,
+    suits_packets,
+};
 use super::shade::{LaneShader, Lit, Shader, Unlit};
 use super::texels::{Component, Rgba, Texels};
+use super::tiles::Tally;
 use super::{Frame, KernelName, Rendered, Statistics};
 use crate::classify::{
     Baked, BakedAlike, LaneClassifier, OneDColumns, StepOpacity, Tabulated, Texture, TwoDColumns, bake, bake_alike,
 };
 use crate::error::Result;
 use crate::field::{
-    GradientUnits, MOST_VOXELS_PER_STEP, Macrocells, SliceTable, Spacing, Trilinear, Voxel, gradient_magnitude_per_mm,
-    gradient_range_per_mm,
+    BlockRanges, GradientUnits, MOST_VOXELS_PER_STEP, Macrocells, SliceTable, Spacing, Trilinear, Voxel,
+    gradient_magnitude_per_mm, gradient_range_per_mm,
 };
+use crate::image::Image;
 use crate::plan::{Lattice, March, Reflection, Table};
 use crate::scene::{ClassifyAt, Surface};
 use crate::simd::{Level, Pairs};
 use crate::volume::{Grid, Samples};
+
+/// Base-2 logarithm of the cells per axis of the blocks that are skipped where empty.
+const BLOCKS: u32 = Macrocells::LOG2_CELLS;
+
+/// The same of packets, to which finer blocks cost little.
+const PACKET_BLOCKS: u32 = 2;
 
 /// Renders by marching.
 pub(super) fn march(frame: &Frame<'_>, settings: &March) -> Result<Rendered> {
@@ -60,6 +71,10 @@ fn walked<M: Medium>(
 ) -> Rendered {
     let level = if M::BY_LANES { frame.schedule.level } else { Level::Scalar };
     let (image, tally) = Kernel { medium, empty_space, level }.render(frame, settings);
+    rendered(image, tally, name, level)
+}
+
+fn rendered(image: Image, tally: Tally, name: String, level: Level) -> Rendered {
     let kernel = format!("{name}/{level}");
     let statistics = Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel };
     Rendered { image, statistics }
@@ -125,9 +140,16 @@ fn by_lanes<V: Voxel + Pairs, C: ByPlace, T: LaneClassifier, S: LaneShader>(
     columns: &T,
     shader: &S,
 ) -> Result<Rendered> {
+    let (grid, level) = (frame.volume.grid(), frame.schedule.level);
     let computed = Computed::new(frame, &field, classifier);
-    let (magnitude, empty_space) = computed.parts(frame, &field, classifier)?;
-    let units = GradientUnits::new(frame.volume.grid(), frame.volume.rescale());
+    let units = GradientUnits::new(grid, frame.volume.rescale());
+    if suits_packets(settings, grid) {
+        let (magnitude, empty_space) = computed.parts::<PACKET_BLOCKS, _, _, _>(frame, &field, classifier)?;
+        let packets = Packets { field, magnitude, units, classifier: columns, shader, empty_space, level };
+        let (image, tally) = packets.render(frame, settings);
+        return Ok(rendered(image, tally, name::<V, C, S>(), level));
+    }
+    let (magnitude, empty_space) = computed.parts::<BLOCKS, _, _, _>(frame, &field, classifier)?;
     let medium = ByLanes { field, magnitude, units, classifier: columns, shader };
     Ok(walked(frame, settings, &medium, empty_space, name::<V, C, S>()))
 }
@@ -223,7 +245,7 @@ fn run<V: Voxel, K: Spacing, C: ByPlace, S: Shader>(
     shader: &S,
 ) -> Result<Rendered> {
     let computed = Computed::new(frame, &field, classifier);
-    let (magnitude, empty_space) = computed.parts(frame, &field, classifier)?;
+    let (magnitude, empty_space) = computed.parts::<BLOCKS, _, _, _>(frame, &field, classifier)?;
     let units = GradientUnits::new(frame.volume.grid(), frame.volume.rescale());
     let medium = Classified { field, magnitude, units, classifier, shader };
     Ok(walked(frame, settings, &OneByOne(&medium), empty_space, name::<V, C, S>()))
@@ -242,7 +264,7 @@ impl Computed {
     }
 
     /// The gradient magnitude as a field, and where nothing is to be seen.
-    fn parts<V: Voxel, K: Spacing, C: ByPlace>(
+    fn parts<const LOG2: u32, V: Voxel, K: Spacing, C: ByPlace>(
         &self,
         frame: &Frame<'_>,
         field: &Trilinear<'_, V, K>,
@@ -251,8 +273,8 @@ impl Computed {
         let magnitude = self.magnitudes.as_deref().map(|m| Trilinear::new(m, field.dims())).transpose()?;
         // Blocks are counted in even steps.
         let empty_space = (frame.schedule.empty_space_skipping && K::EVEN).then(|| {
-            let magnitudes = magnitude.as_ref().map(Macrocells::new);
-            EmptySpace::new(&Macrocells::new(field), magnitudes.as_ref(), classifier)
+            let magnitudes = magnitude.as_ref().map(BlockRanges::<LOG2>::new);
+            EmptySpace::new(&BlockRanges::<LOG2>::new(field), magnitudes.as_ref(), classifier)
         });
         Ok((magnitude, empty_space))
     }

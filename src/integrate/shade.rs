@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::classify::Rgbs;
 use crate::field::{Cell, Position, Spacing, Trilinear, Voxel};
 use crate::math::{Number, Power};
-use crate::scene::{Haze, Shading};
+use crate::scene::{Haze, Light, Shading};
 use crate::simd::{BATCH, Lanes};
 
 /// Shades a sample. Chosen by type, once per frame.
@@ -51,6 +51,15 @@ pub(super) trait Shader: Sync {
 pub(super) trait LaneShader: Shader {
     /// What is there to be seen of samples, given the gradients there, HU/mm; 0 of what is nothing.
     fn shade_lanes<L: Lanes>(&self, aim: &Self::Aim, samples: Rgbs<L>, gradient_per_mm: [L; 3]) -> Rgbs<L>;
+
+    /// Number of lights.
+    fn lights(&self) -> usize;
+
+    /// The half vector of each light for a ray of this direction.
+    fn half_vectors(&self, direction: DVec3) -> impl Iterator<Item = [f32; 3]>;
+
+    /// Factors of the emission and of the extinction at gradients in HU/mm, given the half vectors of each light, by its number.
+    fn reflect<L: Lanes>(&self, gradient_per_mm: [L; 3], half: impl Fn(usize) -> [L; 3]) -> ([L; 3], [L; 3]);
 }
 
 /// Where a sample is.
@@ -85,6 +94,16 @@ pub(super) struct Lit<'a> {
     power: Option<Power>,
     two_sided: bool,
     soft_square: f32,
+    lamps: Vec<Lamp>,
+}
+
+/// A light, for all rays.
+struct Lamp {
+    /// The unit vector towards it; `None` where that is the half vector.
+    towards: Option<[f32; 3]>,
+    /// `diffuse · color` and `specular · color`.
+    diffuse: [f32; 3],
+    specular: [f32; 3],
 }
 
 /// A light as seen along one ray.
@@ -105,6 +124,7 @@ impl<'a> Lit<'a> {
             power: Power::new(definition.shininess as f32),
             two_sided: definition.two_sided,
             soft_square: (definition.soft_gradient_per_mm * definition.soft_gradient_per_mm) as f32,
+            lamps: definition.lights.iter().map(|light| Lamp::new(definition, light)).collect(),
         }
     }
 
@@ -146,22 +166,25 @@ impl<'a> Lit<'a> {
 
     /// [`Lit::factors`] of many gradients, operation by operation.
     #[inline(always)]
-    fn factors_of<L: Lanes>(&self, aim: &[Beam], gradient_per_mm: [L; 3]) -> ([L; 3], [L; 3]) {
+    fn factors_of<L: Lanes>(&self, gradient_per_mm: [L; 3], half: impl Fn(usize) -> [L; 3]) -> ([L; 3], [L; 3]) {
         let (mut reflected, mut highlight) = ([L::splat(self.ambient); 3], [L::ZERO; 3]);
         let square = dot(gradient_per_mm, gradient_per_mm);
         let is_there = L::ZERO.lt(square);
         let fade = square / (square + L::splat(self.soft_square));
         let toward_normal = -L::ONE / square.sqrt();
-        for beam in aim {
-            let lit = self.facings(dot(gradient_per_mm, splats(beam.towards)) * toward_normal);
-            let shine = self.facings(dot(gradient_per_mm, splats(beam.half)) * toward_normal);
+        for (number, lamp) in self.lamps.iter().enumerate() {
+            let shine = self.facings(dot(gradient_per_mm, half(number)) * toward_normal);
+            let lit = match lamp.towards {
+                Some(towards) => self.facings(dot(gradient_per_mm, splats(towards)) * toward_normal),
+                None => shine,
+            };
             let gloss = L::select(L::ZERO.lt(lit), self.glosses(shine), L::ZERO);
             // Where there is no gradient these are no numbers.
             let lit = L::select(is_there, fade * lit, L::ZERO);
             let gloss = L::select(is_there, fade * gloss, L::ZERO);
             for c in 0..3 {
-                reflected[c] += L::splat(beam.diffuse[c]) * lit;
-                highlight[c] += L::splat(beam.specular[c]) * gloss;
+                reflected[c] += L::splat(lamp.diffuse[c]) * lit;
+                highlight[c] += L::splat(lamp.specular[c]) * gloss;
             }
         }
         (reflected, highlight)
@@ -231,6 +254,19 @@ impl LaneShader for Unlit {
     fn shade_lanes<L: Lanes>(&self, (): &(), samples: Rgbs<L>, _: [L; 3]) -> Rgbs<L> {
         samples
     }
+
+    fn lights(&self) -> usize {
+        0
+    }
+
+    fn half_vectors(&self, _direction: DVec3) -> impl Iterator<Item = [f32; 3]> {
+        std::iter::empty()
+    }
+
+    #[inline(always)]
+    fn reflect<L: Lanes>(&self, _: [L; 3], _: impl Fn(usize) -> [L; 3]) -> ([L; 3], [L; 3]) {
+        ([L::ONE; 3], [L::ZERO; 3])
+    }
 }
 
 impl LaneShader for Lit<'_> {
@@ -241,13 +277,44 @@ impl LaneShader for Lit<'_> {
         [r, g, b, extinction]: Rgbs<L>,
         gradient_per_mm: [L; 3],
     ) -> Rgbs<L> {
-        let (reflected, highlight) = self.factors_of(aim, gradient_per_mm);
+        let (reflected, highlight) = self.factors_of(
+            gradient_per_mm,
+            #[inline(always)]
+            |light| splats(aim[light].half),
+        );
         [
             r * reflected[0] + extinction * highlight[0],
             g * reflected[1] + extinction * highlight[1],
             b * reflected[2] + extinction * highlight[2],
             extinction,
         ]
+    }
+
+    fn lights(&self) -> usize {
+        self.lamps.len()
+    }
+
+    fn half_vectors(&self, direction: DVec3) -> impl Iterator<Item = [f32; 3]> {
+        self.definition.directions(direction).map(|(_, half, _)| half.as_vec3().to_array())
+    }
+
+    #[inline(always)]
+    fn reflect<L: Lanes>(&self, gradient_per_mm: [L; 3], half: impl Fn(usize) -> [L; 3]) -> ([L; 3], [L; 3]) {
+        self.factors_of(gradient_per_mm, half)
+    }
+}
+
+impl Lamp {
+    fn new(shading: &Shading, light: &Light) -> Self {
+        let (towards, color) = match *light {
+            Light::Headlight { color } => (None, color),
+            Light::Directional { towards, color } => (Some(towards.as_vec3().to_array()), color),
+        };
+        Lamp {
+            towards,
+            diffuse: color.map(|c| (c * shading.diffuse) as f32),
+            specular: color.map(|c| (c * shading.specular) as f32),
+        }
     }
 }
 
@@ -264,7 +331,6 @@ fn dot<N: Number>([ax, ay, az]: [N; 3], [bx, by, bz]: [N; 3]) -> N {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Light;
 
     const SPOT: Spot = Spot { cell: Cell { corner: [0; 3], fraction: [0.0; 3] }, distance_mm: 0.0 };
 

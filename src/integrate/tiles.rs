@@ -12,6 +12,9 @@ use crate::scene::{Background, Ray};
 /// Pixels per side of a tile: neighbouring rays read the same voxels.
 const TILE: usize = 16;
 
+/// Pixels of a tile.
+pub(super) const TILE_PIXELS: usize = TILE * TILE;
+
 /// Light that reaches the eye along a ray, and what it took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Radiance {
@@ -57,6 +60,32 @@ struct Tile<'p> {
     rows: Vec<&'p mut [[f32; 4]]>,
 }
 
+/// The pixels of a tile, numbered row by row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pixels {
+    column: usize,
+    row: usize,
+    width: usize,
+    height: usize,
+}
+
+/// Pixels per side of a block of neighbours.
+const NEIGHBOURS: usize = 4;
+
+impl Pixels {
+    /// All pixels, neighbours together: their numbers, and `[column, row]` of the picture.
+    pub(super) fn neighbours_first(self) -> impl Iterator<Item = (usize, [usize; 2])> {
+        let Pixels { column, row, width, height } = self;
+        let corners = move |n: usize| (0..n).step_by(NEIGHBOURS);
+        let span = |from: usize, n: usize| from..(from + NEIGHBOURS).min(n);
+        let blocks = corners(height).flat_map(move |top| corners(width).map(move |left| (top, left)));
+        blocks.flat_map(move |(top, left)| {
+            let pixels = span(top, height).flat_map(move |y| span(left, width).map(move |x| (x, y)));
+            pixels.map(move |(x, y)| (x + width * y, [column + x, row + y]))
+        })
+    }
+}
+
 /// Traces rays `0..count`, given by the first function; the second takes the light of each that meets the volume.
 pub(super) type TraceAll<'t> = &'t (dyn Fn(usize, &dyn Fn(usize) -> Ray, &mut dyn FnMut(usize, Radiance)) + Sync);
 
@@ -71,6 +100,24 @@ pub(super) fn render_whole(frame: &Frame<'_>, trace: TraceAll<'_>) -> (Image, Ta
         trace(across * tile.rows.len(), &ray, &mut |n, light| {
             tally.count(&light);
             tile.rows[n / across][n % across] = over(Some(light), background);
+        });
+    })
+}
+
+/// Renders all pixels, those of a tile at once: `trace` gives the light of those, by their number in the tile, whose rays meet
+/// the volume, in any order; `scratch` makes what a thread keeps between tiles.
+pub(super) fn render_together<W>(
+    frame: &Frame<'_>,
+    scratch: impl Fn() -> W + Sync + Send,
+    trace: impl Fn(&mut W, Pixels, &mut dyn FnMut(usize, Radiance)) + Sync,
+) -> (Image, Tally) {
+    let background = frame.scene.background;
+    render_tiles(frame, scratch, |scratch, tile, tally| {
+        let [column, row, width, height] = [tile.column, tile.row, tile.rows[0].len(), tile.rows.len()];
+        tile.rows.iter_mut().for_each(|pixels| pixels.fill(over(None, background)));
+        trace(scratch, Pixels { column, row, width, height }, &mut |n, light| {
+            tally.count(&light);
+            tile.rows[n / width][n % width] = over(Some(light), background);
         });
     })
 }

@@ -119,6 +119,7 @@ impl Camera {
 
     /// The ray through a point of the picture: `x` in `[0, width]` to the right, `y` in `[0, height]` downwards; a pixel's
     /// centre has fractions of one half.
+    #[inline(always)]
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         let [width, height] = self.size.map(|n| n as f64);
         // In units of half the picture's height, so that pixels are square.
@@ -145,6 +146,7 @@ impl Camera {
     }
 
     /// The ray through the centre of pixel `(column, row)`, counted from the top left.
+    #[inline(always)]
     pub fn pixel_ray(&self, column: usize, row: usize) -> Ray {
         self.ray(column as f64 + 0.5, row as f64 + 0.5)
     }

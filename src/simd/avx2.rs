@@ -5,7 +5,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::lanes::{absorbed, last_pair, last_quad, last_word, mean_transmittance};
+use super::lanes::{absorbed, last, last_pair, last_quad, last_word, mean_transmittance};
 use super::register::{arithmetic, operators};
 use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, Table};
 use crate::math::Number;
@@ -69,11 +69,31 @@ const COMPRESSED: [[i32; 8]; 256] = {
     all
 };
 
+/// For each set of lanes and each lane, how many of the set are before it.
+const RANKS: [[i32; 8]; 256] = {
+    let mut all = [[0; 8]; 256];
+    let mut bits: usize = 0;
+    while bits < 256 {
+        let mut lane = 1;
+        while lane < 8 {
+            all[bits][lane] = all[bits][lane - 1] + (bits >> (lane - 1) & 1) as i32;
+            lane += 1;
+        }
+        bits += 1;
+    }
+    all
+};
+
 // SAFETY, for every block below: values of these types exist only in kernels that `Level::run` has started, so the processor
 // has the instructions; slices are checked to be as long as what is read or written, and indices are clamped to them.
 #[inline(always)]
 fn order(mask: Mask8) -> __m256i {
     unsafe { _mm256_loadu_si256(COMPRESSED[mask.bits() as usize & 255].as_ptr().cast()) }
+}
+
+#[inline(always)]
+fn ranks(mask: Mask8) -> __m256i {
+    unsafe { _mm256_loadu_si256(RANKS[mask.bits() as usize & 255].as_ptr().cast()) }
 }
 
 #[inline(always)]
@@ -119,6 +139,10 @@ impl Lanes for F32x8 {
         F64x8(unsafe {
             [_mm256_cvtps_pd(_mm256_castps256_ps128(self.0)), _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(self.0))]
         })
+    }
+    #[inline(always)]
+    fn gather(from: &[f32], at: I32x8) -> Self {
+        F32x8(unsafe { _mm256_i32gather_ps::<4>(from.as_ptr(), clamped(at, last(from))) })
     }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
@@ -219,6 +243,10 @@ impl Lanes for F32x8 {
     #[inline(always)]
     fn compress(self, mask: Mask8) -> Self {
         F32x8(unsafe { _mm256_permutevar8x32_ps(self.0, order(mask)) })
+    }
+    #[inline(always)]
+    fn expand(self, mask: Mask8) -> Self {
+        F32x8(unsafe { _mm256_permutevar8x32_ps(self.0, ranks(mask)) })
     }
 }
 
@@ -388,6 +416,10 @@ impl Ints for I32x8 {
         I32x8(unsafe { _mm256_sllv_epi32(_mm256_set1_epi32(1), self.0) })
     }
     #[inline(always)]
+    fn gather(from: &[i32], at: Self) -> Self {
+        I32x8(unsafe { _mm256_i32gather_epi32::<4>(from.as_ptr(), clamped(at, last(from))) })
+    }
+    #[inline(always)]
     fn bytes(from: &[u8], at: Self) -> Self {
         unsafe {
             let words = _mm256_i32gather_epi32::<1>(from.as_ptr().cast(), clamped(at, last_word(from)));
@@ -410,6 +442,10 @@ impl Ints for I32x8 {
     #[inline(always)]
     fn compress(self, mask: Mask8) -> Self {
         I32x8(unsafe { _mm256_permutevar8x32_epi32(self.0, order(mask)) })
+    }
+    #[inline(always)]
+    fn expand(self, mask: Mask8) -> Self {
+        I32x8(unsafe { _mm256_permutevar8x32_epi32(self.0, ranks(mask)) })
     }
 }
 

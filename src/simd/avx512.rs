@@ -5,7 +5,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::lanes::{absorbed, last_pair, last_quad, last_word, mean_transmittance};
+use super::lanes::{absorbed, last, last_pair, last_quad, last_word, mean_transmittance};
 use super::register::{arithmetic, operators};
 use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, Table};
 use crate::math::Number;
@@ -93,6 +93,13 @@ impl Lanes for F32x16 {
         F64x16(unsafe {
             [_mm512_cvtps_pd(_mm512_castps512_ps256(self.0)), _mm512_cvtps_pd(_mm512_extractf32x8_ps::<1>(self.0))]
         })
+    }
+    #[inline(always)]
+    fn gather(from: &[f32], at: I32x16) -> Self {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last(from) as i32));
+            F32x16(_mm512_i32gather_ps::<4>(at, from.as_ptr()))
+        }
     }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
@@ -229,6 +236,10 @@ impl Lanes for F32x16 {
     #[inline(always)]
     fn compress(self, mask: Mask16) -> Self {
         F32x16(unsafe { _mm512_maskz_compress_ps(mask.0, self.0) })
+    }
+    #[inline(always)]
+    fn expand(self, mask: Mask16) -> Self {
+        F32x16(unsafe { _mm512_maskz_expand_ps(mask.0, self.0) })
     }
 }
 
@@ -380,6 +391,13 @@ impl Ints for I32x16 {
         I32x16(unsafe { _mm512_sllv_epi32(_mm512_set1_epi32(1), self.0) })
     }
     #[inline(always)]
+    fn gather(from: &[i32], at: Self) -> Self {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last(from) as i32));
+            I32x16(_mm512_i32gather_epi32::<4>(at, from.as_ptr()))
+        }
+    }
+    #[inline(always)]
     fn bytes(from: &[u8], at: Self) -> Self {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_word(from) as i32));
@@ -408,6 +426,10 @@ impl Ints for I32x16 {
     #[inline(always)]
     fn compress(self, mask: Mask16) -> Self {
         I32x16(unsafe { _mm512_maskz_compress_epi32(mask.0, self.0) })
+    }
+    #[inline(always)]
+    fn expand(self, mask: Mask16) -> Self {
+        I32x16(unsafe { _mm512_maskz_expand_epi32(mask.0, self.0) })
     }
 }
 

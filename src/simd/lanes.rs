@@ -20,6 +20,8 @@ pub(crate) trait Lanes: Number {
     fn from_doubles(doubles: Self::Doubles) -> Self;
     /// Each number, exactly.
     fn to_doubles(self) -> Self::Doubles;
+    /// Numbers of a slice of at least one; indices beyond its end give its last one.
+    fn gather(from: &[f32], at: Self::Ints) -> Self;
     /// The same number in every lane.
     #[inline(always)]
     fn splat(x: f32) -> Self {
@@ -57,6 +59,8 @@ pub(crate) trait Lanes: Number {
     fn quads_f32(samples: &[f32], at: Self::Ints) -> [Self; 4];
     /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
     fn compress(self, mask: Self::Mask) -> Self;
+    /// The first lanes, in order, where the mask is true; the others are unspecified.
+    fn expand(self, mask: Self::Mask) -> Self;
 
     /// Opacities in the order in which light meets them, combined: of all before each, and of all of them. `a ∘ b = a + b − a b`
     /// is accurate however small they are; in a tree of four levels, the same at every level of instructions.
@@ -145,6 +149,8 @@ pub(crate) trait Ints:
     fn without_low_bits(self, by: Self) -> Self;
     /// 2^`self`, for numbers from 0 to 30.
     fn power_of_two(self) -> Self;
+    /// Numbers of a slice of at least one; indices beyond its end give its last one.
+    fn gather(from: &[i32], at: Self) -> Self;
     /// Bytes of a slice; indices beyond its end give another byte of it. It has at least four.
     fn bytes(from: &[u8], at: Self) -> Self;
     /// `self = other`.
@@ -155,6 +161,8 @@ pub(crate) trait Ints:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
     fn compress(self, mask: Self::Mask) -> Self;
+    /// The first lanes, in order, where the mask is true; the others are unspecified.
+    fn expand(self, mask: Self::Mask) -> Self;
 }
 
 /// Truths side by side.
@@ -213,6 +221,14 @@ impl Pairs for f32 {
 pub(super) fn last_pair<T>(samples: &[T]) -> u32 {
     assert!(samples.len() >= 2, "a pair has two samples");
     (samples.len() - 2).min(i32::MAX as usize) as u32
+}
+
+/// The last index of a slice.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(super) fn last<T>(numbers: &[T]) -> u32 {
+    assert!(!numbers.is_empty(), "a number to read");
+    (numbers.len() - 1).min(i32::MAX as usize) as u32
 }
 
 /// The last index at which four bytes can be read.

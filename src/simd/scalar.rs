@@ -18,6 +18,10 @@ impl Lanes for f32 {
         f64::from(self)
     }
     #[inline(always)]
+    fn gather(from: &[f32], at: i32) -> Self {
+        from[(at as u32 as usize).min(from.len() - 1)]
+    }
+    #[inline(always)]
     fn load(from: &[f32]) -> Self {
         from[0]
     }
@@ -84,6 +88,10 @@ impl Lanes for f32 {
     }
     #[inline(always)]
     fn compress(self, _: bool) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn expand(self, _: bool) -> Self {
         self
     }
 }
@@ -182,6 +190,10 @@ impl Ints for i32 {
         1 << self
     }
     #[inline(always)]
+    fn gather(from: &[i32], at: Self) -> Self {
+        from[(at as u32 as usize).min(from.len() - 1)]
+    }
+    #[inline(always)]
     fn bytes(from: &[u8], at: Self) -> Self {
         i32::from(from[(at as u32 as usize).min(from.len() - 4)])
     }
@@ -199,6 +211,10 @@ impl Ints for i32 {
     }
     #[inline(always)]
     fn compress(self, _: bool) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn expand(self, _: bool) -> Self {
         self
     }
 }

@@ -26,6 +26,7 @@ impl Kernel for Everything {
         let tables = [9, 31, 50].map(|n| Table::new(&numbers(n, 4)));
         let bytes: Vec<u8> = samples.iter().map(|&x| x as u8).collect();
         let places: Vec<i32> = a.iter().map(|x| (x.abs() * 7.0) as i32).collect();
+        let wholes: Vec<i32> = samples.iter().map(|&x| i32::from(x) * 77).collect();
         let sixteen: [f32; BATCH] = std::array::from_fn(|i| b[i]);
         let mut out = vec![Vec::new(); 60];
         for at in (0..4096).step_by(L::LANES) {
@@ -81,6 +82,8 @@ impl Kernel for Everything {
                 L::from_ints(whole.without_low_bits(few)),
                 L::from_ints(few.power_of_two()),
                 L::from_ints(L::Ints::bytes(&bytes, places)),
+                L::gather(&b[..777], places),
+                L::from_ints(L::Ints::gather(&wholes, places)),
             ];
             let mut lanes = vec![0.0; L::LANES];
             let pairs = [first, second, third, fourth];
@@ -140,6 +143,40 @@ impl Kernel for Below {
             assert_eq!(mask.any(), count > 0);
         }
         (kept, from)
+    }
+}
+
+/// Numbers put where a mask is true, in order: what [`Below`] takes out, put back.
+struct PutBack(f32);
+
+impl Kernel for PutBack {
+    type Output = (Vec<f32>, Vec<i32>);
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let all = numbers(512, 9);
+        let (mut put, mut ranks) = (vec![0.0; 512], vec![0; 512]);
+        for at in (0..512).step_by(L::LANES) {
+            let x = L::load(&all[at..]);
+            let mask = x.lt(L::from_f64(f64::from(self.0)));
+            L::select(mask, x.compress(mask).expand(mask), L::ZERO).store(&mut put[at..]);
+            let place = L::Ints::count() + L::Ints::splat(at as i32);
+            let back = place.compress(mask).expand(mask);
+            L::Ints::select(mask, back, L::Ints::splat(-1)).store(&mut ranks[at..]);
+        }
+        (put, ranks)
+    }
+}
+
+#[test]
+fn expansion_undoes_compression() {
+    for bound in [-1e30, -0.5, 0.0, 3.0, 1e30] {
+        let all = numbers(512, 9);
+        let put: Vec<f32> = all.iter().map(|&x| if x < bound { x } else { 0.0 }).collect();
+        let ranks: Vec<i32> = (0..512).map(|i| if all[i as usize] < bound { i } else { -1 }).collect();
+        for level in Level::ALL {
+            assert_eq!(level.run(PutBack(bound)), (put.clone(), ranks.clone()), "{level}, below {bound}");
+        }
     }
 }
 

@@ -122,7 +122,9 @@ fn a_lit_scene_without_strength_is_the_unlit_one() {
     let volume = blobs_i16();
     let off = Shading { ambient: 1.0, diffuse: 0.0, specular: 0.0, ..two_lights() };
     let lit = pixels(&volume, &scene(&volume, tissue_1d(), Some(off)), MARCH);
-    assert_eq!(lit, pixels(&volume, &scene(&volume, tissue_1d(), None), MARCH));
+    // What is shaded is summed in another order than what is not.
+    let worst = apart(&lit, &pixels(&volume, &scene(&volume, tissue_1d(), None), MARCH));
+    assert!(worst < 1e-6, "{worst:e} apart");
 }
 
 #[test]

@@ -44,6 +44,7 @@ impl Stretch {
 
 impl Cuts {
     /// Cuts a ray's chord as the settings say. `anchor_mm` is a point on one of the view planes.
+    #[inline(always)]
     pub(super) fn new(
         settings: &March,
         chord: &Chord,
@@ -66,6 +67,7 @@ impl Cuts {
         }
     }
 
+    #[inline(always)]
     fn from_first(first_mm: f64, step_mm: f64, length_mm: f64) -> Self {
         // A rest below a billionth of a step is rounding, and goes to the interval before it.
         let more = ((length_mm - first_mm) / step_mm - 1e-9).ceil().max(0.0);
@@ -73,6 +75,7 @@ impl Cuts {
     }
 
     /// Cut `i` of `0..=intervals`, mm from the entry.
+    #[inline(always)]
     fn at(&self, i: usize) -> f64 {
         match i {
             0 => 0.0,
@@ -90,6 +93,7 @@ impl Cuts {
     }
 
     /// The samples in the order they are visited, as at most four stretches.
+    #[inline(always)]
     pub(super) fn stretches(&self, rule: SampleRule, order: Order) -> [Stretch; 4] {
         let n = self.intervals;
         let length = |i: usize| self.at(i + 1) - self.at(i);
