@@ -109,6 +109,16 @@ pub enum Reflection {
     /// As VTK's GPU mapper does it: Phong's highlight about the mirrored light, no fade where the gradient vanishes.
     VtkPhong,
 }
+impl March {
+    /// Whether samples are composited as for most pictures: front to back, one for an interval, in associated colours, emission by
+    /// length, without a table.
+    pub fn is_plain(&self) -> bool {
+        self.rule != SampleRule::Trapezoid
+            && self.order == Order::FrontToBack
+            && (self.colors, self.emission) == (Colors::Associated, Emission::PerLength)
+            && self.table.is_none()
+    }
+}
 
 /// Where in an interval its sample lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -7,7 +7,7 @@ use crate::volume::Grid;
 
 use super::model::{self, reads_transfer_function};
 use super::{
-    Bound, Colors, Emission, Exact, Jitter, JitterKind, Lattice, Method, Order, Plan, Reflection, SampleRule,
+    Bound, Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Plan, Reflection, SampleRule,
     VolumeInfo,
 };
 use super::{clip, mask, voxels};
@@ -38,6 +38,7 @@ pub(super) const NOT_NAMED: &str = "the pipeline does not name it";
 
 /// Cells along each axis of a block of macrocells, for marching and for the exact integrator.
 const MARCHED_BLOCK_CELLS: usize = 8;
+const PACKET_BLOCK_CELLS: usize = 4;
 const EXACT_BLOCK_CELLS: usize = 4;
 
 pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
@@ -62,10 +63,13 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         field("gradient at samples, by central differences, not stored", 0);
     }
     if plan.demand.macrocells {
+        let two_fields = plan.demand.gradient_magnitude;
         let (cells, bytes) = match plan.method {
             Method::Exact(_) => (EXACT_BLOCK_CELLS, 9),
-            _ if plan.demand.gradient_magnitude => (MARCHED_BLOCK_CELLS, 16),
-            _ => (MARCHED_BLOCK_CELLS, 8),
+            Method::March(march) if is_in_packets(plan, &march) => {
+                (PACKET_BLOCK_CELLS, if two_fields { 17 } else { 9 })
+            }
+            _ => (MARCHED_BLOCK_CELLS, if two_fields { 17 } else { 9 }),
         };
         let what = format!("macrocells: value ranges of blocks of {cells} x {cells} x {cells} cells");
         field(&what, bytes * block_count(&volume.grid, cells));
@@ -117,6 +121,15 @@ fn describe_volume(volume: &VolumeInfo) -> String {
         Some([least, most]) => format!("{least:.3} to {most:.3} (uneven, as they are)"),
     };
     format!("{nx} x {ny} x {nz} voxels of {:.3} x {:.3} x {between_slices} mm, {storage}, {values}", mm.x, mm.y)
+}
+
+/// Whether rays are marched side by side, which skips finer blocks.
+fn is_in_packets(plan: &Plan, march: &March) -> bool {
+    let Scene { model, effects, shading, .. } = &plan.scene;
+    let of_values = plan.colors.is_none() && *model == Model::Light && effects.classify == ClassifyAt::Samples;
+    let plain = !effects.change_light() && effects.mask.is_none();
+    let reflects = shading.is_none() || march.reflection == Reflection::BlinnPhong;
+    of_values && plain && reflects && march.is_plain() && march.lattice == Lattice::PerRay
 }
 
 pub(super) fn marched_block_count(grid: &Grid) -> u64 {

@@ -112,14 +112,6 @@ pub(super) fn fold(settings: &March) -> Fold {
     }
 }
 
-/// Whether these settings ask for [`fold_plain`].
-pub(super) fn is_plain(settings: &March) -> bool {
-    settings.rule != SampleRule::Trapezoid
-        && settings.order == Order::FrontToBack
-        && (settings.colors, settings.emission) == (Colors::Associated, Emission::PerLength)
-        && settings.table.is_none()
-}
-
 /// The fold of most pictures, with the registers of a level.
 #[inline(always)]
 pub(super) fn fold_plain<L: Lanes>(light: &mut Light, run: &Run, delta_mm: &[f32; SAMPLES], samples: usize) {

@@ -30,7 +30,7 @@ impl<M: Medium> Kernel<'_, M> {
     /// Renders every pixel of a frame.
     pub(in super::super) fn render(&self, frame: &Frame<'_>, settings: &March) -> (Image, Tally) {
         let (dims, camera) = (frame.volume.grid().dims(), &frame.scene.camera);
-        let fold = (!composite::is_plain(settings)).then(|| composite::fold(settings));
+        let fold = (!settings.is_plain()).then(|| composite::fold(settings));
         let sampling = Sampling::new(frame, settings);
         tiles::render(frame, M::Aim::default, |aim, column, row| {
             let ray = camera.pixel_ray(column, row);

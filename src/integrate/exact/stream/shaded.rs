@@ -7,7 +7,7 @@ use super::light::{LIGHTS, Lighting, Lights, Seen};
 use super::lit::Allowance;
 use super::nodes::{AtNodes, Powers, powers};
 use super::pieces::{Next, Run, load_fields, nearest, put};
-use super::queue::{ROOM, Results, Shown, Way};
+use super::queue::{Results, Shown, Way, Ways};
 use super::voxels::Voxels;
 use crate::field::Voxel;
 use crate::integrate::exact::piece::Integral;
@@ -371,7 +371,7 @@ pub(super) fn halved<L: Lanes, V: Voxel + Pairs, const F: usize>(
 
 /// Pieces side by side.
 struct Staged<const F: usize> {
-    way: super::queue::Ways<BATCH>,
+    way: Ways<BATCH>,
     fields: [[[f32; BATCH]; 4]; F],
     interval: [[i32; BATCH]; F],
     /// Front, back, length of the cell, transmittance in front, what may be missed.
@@ -382,7 +382,7 @@ impl<const F: usize> Staged<F> {
     #[inline(always)]
     fn new() -> Self {
         Staged {
-            way: super::queue::Ways::new(),
+            way: Ways::new(),
             fields: [[[0.0; BATCH]; 4]; F],
             interval: [[0; BATCH]; F],
             numbers: [[0.0; BATCH]; 5],
@@ -405,5 +405,3 @@ impl<const F: usize> Staged<F> {
         }
     }
 }
-
-const _: () = assert!(ROOM >= BATCH);

@@ -17,7 +17,6 @@ mod runs;
 mod visible;
 mod walk;
 
-use super::composite;
 use super::sampling::Sampling;
 use crate::classify::LaneClassifier;
 use crate::field::{GradientUnits, Trilinear, Voxel};
@@ -53,7 +52,7 @@ pub(in super::super) struct Packets<'a, V, C, S> {
 pub(in super::super) fn suits(settings: &March, grid: &Grid) -> bool {
     let corners = grid.corners_mm();
     let longest_mm = (0..4).map(|c| corners[c].distance(corners[7 - c])).fold(0.0, f64::max);
-    composite::is_plain(settings) && longest_mm < pieces::MOST_SAMPLES * settings.step_mm
+    settings.is_plain() && longest_mm < pieces::MOST_SAMPLES * settings.step_mm
 }
 
 /// What is kept between tiles.
