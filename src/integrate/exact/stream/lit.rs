@@ -3,7 +3,7 @@
 
 use super::function::Function;
 use super::light::{LIGHTS, Lighting, Lights, Seen, along_light};
-use super::pieces::{Next, Run, load_fields, put};
+use super::pieces::{Next, Run, Runs, load_fields, put};
 use super::queue::{Passed, Results, Shown};
 use super::shaded::Estimate;
 use super::voxels::{Corners, Voxels};
@@ -128,50 +128,38 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let harm = L::from_f64(f64::from(scenery.harm_per_mm)) * length_mm;
         let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
         let cells = scenery.cells::<L>(&shown.slot[first..shown.count]);
-        let mut runs: [Run<L>; F] = each(
-            #[inline(always)]
-            |f| Run::new(fields[f], function.axis(f)),
-        );
+        let mut runs = Runs::new(&fields, function);
         let mut sides: [Run<L>; LIGHTS] = each(
             #[inline(always)]
             |n| Run::new(along_light(&cells.gradient, &cells.lights.towards[n]), &lighting.side),
         );
         let mut sum = Sum::new();
-        let (mut from, mut misplaced) = (L::ZERO, is_cell.and_not(is_cell));
+        let (mut from, mut stuck) = (L::ZERO, is_cell.and_not(is_cell));
         loop {
             let open = is_cell.and(from.lt(L::ONE));
             if !open.any() {
                 break;
             }
-            let next: [Next<L>; F] = each(
-                #[inline(always)]
-                |f| runs[f].next(function.axis(f), from),
-            );
-            let mut to = next[0].to;
-            for n in next.iter().skip(1) {
-                to = to.min(n.to);
-            }
-            let mut turns = [next[0]; LIGHTS];
+            let part = runs.part(function, from);
+            let mut to = part.to;
+            let mut turns: [Option<Next<L>>; LIGHTS] = [None; LIGHTS];
             for n in 0..lighting.lights() {
-                turns[n] = sides[n].next(&lighting.side, from);
-                to = to.min(turns[n].to);
+                let turn = sides[n].next(&lighting.side, from);
+                to = to.min(turn.to);
+                turns[n] = Some(turn);
             }
-            let mut interval = [L::Ints::splat(0); F];
-            for f in 0..F {
-                interval[f] = runs[f].interval;
-            }
-            let stuck = sum.pass(function, interval, &fields, &cells, scenery, length_mm, open, [from, to]);
-            misplaced = misplaced.or(stuck);
-            for f in 0..F {
-                misplaced = misplaced.or(open.and(runs[f].is_misplaced(function.axis(f), &next[f], to, harm)));
-                runs[f].advance(&next[f], to);
-            }
-            for n in 0..lighting.lights() {
-                sides[n].advance(&turns[n], to);
+            let ends = [from, to];
+            stuck = stuck.or(sum.pass(function, part.interval, &fields, &cells, scenery, length_mm, open, ends));
+            runs.advance(function, &part, to, open, harm);
+            for (side, turn) in sides.iter_mut().zip(&turns) {
+                if let Some(turn) = turn {
+                    side.advance(turn, to);
+                }
             }
             from = to;
         }
-        sum.total.error = L::select(misplaced, L::from_f64(f64::INFINITY), sum.total.error);
+        let error = L::select(stuck, L::from_f64(f64::INFINITY), sum.total.error);
+        sum.total.error = runs.checked(error);
         put(results, shown, first, &sum.total, L::ZERO, sum.pieces);
     }
 }

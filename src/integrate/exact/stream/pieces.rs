@@ -47,30 +47,17 @@ pub(super) fn cut<L: Lanes, const F: usize>(
         let length_mm = L::load(&shown.length_mm[first..]);
         let harm = L::from_f64(f64::from(harm_per_mm)) * length_mm;
         let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
-        let mut runs: [Run<L>; F] = each(
-            #[inline(always)]
-            |f| Run::new(fields[f], function.axis(f)),
-        );
+        let mut runs = Runs::new(&fields, function);
         let mut total = Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO };
         let (mut transmittance, mut from, mut pieces) = (L::ONE, L::ZERO, L::ZERO);
-        let mut misplaced = is_cell.and_not(is_cell);
         loop {
             let open = is_cell.and(from.lt(L::ONE));
             if !open.any() {
                 break;
             }
-            let next: [Next<L>; F] = each(
-                #[inline(always)]
-                |f| runs[f].next(function.axis(f), from),
-            );
-            let to = nearest(&next);
-            let mut interval = [L::Ints::splat(0); F];
-            let mut parts = fields;
-            for f in 0..F {
-                interval[f] = runs[f].interval;
-                parts[f] = restrict(&fields[f], from, to);
-            }
-            let piece = function.integrate(interval, &parts, length_mm * (to - from), &AsItIs);
+            let part = runs.part(function, from);
+            let along = part.fields(&fields, from, part.to);
+            let piece = function.integrate(part.interval, &along, length_mm * (part.to - from), &AsItIs);
             for c in 0..3 {
                 total.radiance[c] += transmittance * piece.radiance[c];
             }
@@ -78,13 +65,10 @@ pub(super) fn cut<L: Lanes, const F: usize>(
             total.absorbed += transmittance * piece.absorbed;
             transmittance -= transmittance * piece.absorbed;
             pieces += L::select(open, L::ONE, L::ZERO);
-            for f in 0..F {
-                misplaced = misplaced.or(open.and(runs[f].is_misplaced(function.axis(f), &next[f], to, harm)));
-                runs[f].advance(&next[f], to);
-            }
-            from = to;
+            runs.advance(function, &part, part.to, open, harm);
+            from = part.to;
         }
-        total.error = L::select(misplaced, L::from_f64(f64::INFINITY), total.error);
+        total.error = runs.checked(total.error);
         put(results, shown, first, &total, L::ZERO, pieces);
     }
 }
@@ -113,7 +97,9 @@ pub(super) fn put<L: Lanes, const F: usize>(
 ) {
     let mut lanes = [[0.0; 16]; 7];
     let [r, g, b] = integral.radiance;
-    for (lane, x) in lanes.iter_mut().zip([r, g, b, integral.absorbed, integral.error, pieces, variance]) {
+    // Summed over pieces, it may be more by a rounding.
+    let absorbed = integral.absorbed.min(L::ONE);
+    for (lane, x) in lanes.iter_mut().zip([r, g, b, absorbed, integral.error, pieces, variance]) {
         x.store(lane);
     }
     let slots = &shown.slot[first..shown.count.min(first + L::LANES)];
@@ -153,14 +139,73 @@ pub(super) struct Next<L: Lanes> {
     end: L::Ints,
 }
 
-/// The nearest of the places where a field's interval or direction changes.
-#[inline(always)]
-pub(super) fn nearest<L: Lanes, const F: usize>(next: &[Next<L>; F]) -> L {
-    let mut to = next[0].to;
-    for n in next.iter().skip(1) {
-        to = to.min(n.to);
+/// The fields of cells on their way.
+pub(super) struct Runs<L: Lanes, const F: usize> {
+    runs: [Run<L>; F],
+    /// Cells in which rounding may have misplaced a cut.
+    misplaced: L::Mask,
+}
+
+/// A part of cells in which every field stays in an interval, and rises or falls.
+pub(super) struct Part<L: Lanes, const F: usize> {
+    next: [Next<L>; F],
+    /// Where it ends.
+    pub(super) to: L,
+    pub(super) interval: [L::Ints; F],
+}
+
+impl<L: Lanes, const F: usize> Part<L, F> {
+    /// The fields from one place to another.
+    #[inline(always)]
+    pub(super) fn fields(&self, fields: &[Cubic<L>; F], from: L, to: L) -> [Cubic<L>; F] {
+        let mut along = *fields;
+        for f in 0..F {
+            along[f] = restrict(&fields[f], from, to);
+        }
+        along
     }
-    to
+}
+
+impl<L: Lanes, const F: usize> Runs<L, F> {
+    #[inline(always)]
+    pub(super) fn new(fields: &[Cubic<L>; F], function: &impl Function<F>) -> Self {
+        let runs = each(
+            #[inline(always)]
+            |f| Run::new(fields[f], function.axis(f)),
+        );
+        Runs { runs, misplaced: L::ONE.lt(L::ZERO) }
+    }
+
+    /// The part that begins at `from`.
+    #[inline(always)]
+    pub(super) fn part(&self, function: &impl Function<F>, from: L) -> Part<L, F> {
+        let next: [Next<L>; F] = each(
+            #[inline(always)]
+            |f| self.runs[f].next(function.axis(f), from),
+        );
+        let mut part = Part { next, to: next[0].to, interval: [L::Ints::splat(0); F] };
+        for f in 0..F {
+            part.to = part.to.min(next[f].to);
+            part.interval[f] = self.runs[f].interval;
+        }
+        part
+    }
+
+    /// Goes on to `to`, which is no further than the end of the part.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, function: &impl Function<F>, part: &Part<L, F>, to: L, open: L::Mask, harm: L) {
+        for f in 0..F {
+            let misplaced = self.runs[f].is_misplaced(function.axis(f), &part.next[f], to, harm);
+            self.misplaced = self.misplaced.or(open.and(misplaced));
+            self.runs[f].advance(&part.next[f], to);
+        }
+    }
+
+    /// An error that is infinite where cuts may be misplaced.
+    #[inline(always)]
+    pub(super) fn checked(&self, error: L) -> L {
+        L::select(self.misplaced, L::from_f64(f64::INFINITY), error)
+    }
 }
 
 impl<L: Lanes> Run<L> {

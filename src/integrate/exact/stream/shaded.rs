@@ -6,7 +6,7 @@ use super::function::Function;
 use super::light::{LIGHTS, Lighting, Lights, Seen};
 use super::lit::Allowance;
 use super::nodes::{AtNodes, Powers, powers};
-use super::pieces::{Next, Run, load_fields, nearest, put};
+use super::pieces::{Runs, load_fields, put};
 use super::queue::{Results, Shown, Way, Ways};
 use super::voxels::Voxels;
 use crate::field::Voxel;
@@ -223,37 +223,25 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let harm = L::from_f64(f64::from(scenery.harm_per_mm)) * length_mm;
         let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
         let sight = scenery.sight::<L>(&shown.way.load(first), is_cell);
-        let mut runs: [Run<L>; F] = each(
-            #[inline(always)]
-            |f| Run::new(fields[f], function.axis(f)),
-        );
+        let mut runs = Runs::new(&fields, function);
         let mut total = Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO };
         let (mut transmittance, mut from, mut pieces, mut variance) = (L::ONE, L::ZERO, L::ZERO, L::ZERO);
-        let mut misplaced = is_cell.and_not(is_cell);
         loop {
             let open = is_cell.and(from.lt(L::ONE));
             if !open.any() {
                 break;
             }
-            let next: [Next<L>; F] = each(
-                #[inline(always)]
-                |f| runs[f].next(function.axis(f), from),
-            );
-            let to = nearest(&next);
-            let mut interval = [L::Ints::splat(0); F];
-            let mut part: [Cubic<L>; F] = fields;
-            for f in 0..F {
-                interval[f] = runs[f].interval;
-                part[f] = restrict(&fields[f], from, to);
-            }
-            let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, [from, to]);
-            let piece_mm = length_mm * (to - from);
-            let piece = function.integrate(interval, &part, piece_mm, &light);
+            let part = runs.part(function, from);
+            let ends = [from, part.to];
+            let along = part.fields(&fields, from, part.to);
+            let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, ends);
+            let piece_mm = length_mm * (part.to - from);
+            let piece = function.integrate(part.interval, &along, piece_mm, &light);
             let missed = transmittance * scenery.missed(&light, &piece);
             let allowed = sight.may_miss(transmittance * piece.absorbed);
             let refused = open.and_not(missed.le(allowed).and(scenery.allows(&sight, &piece, piece_mm)));
             if refused.any() {
-                parts.put_off(refused, first, false, [from, to], interval, transmittance, allowed);
+                parts.put_off(refused, first, false, ends, part.interval, transmittance, allowed);
             }
             let counts = L::select(refused, L::ZERO, transmittance);
             for c in 0..3 {
@@ -264,13 +252,10 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
             total.absorbed += transmittance * piece.absorbed;
             transmittance -= transmittance * piece.absorbed;
             pieces += L::select(open, L::ONE, L::ZERO);
-            for f in 0..F {
-                misplaced = misplaced.or(open.and(runs[f].is_misplaced(function.axis(f), &next[f], to, harm)));
-                runs[f].advance(&next[f], to);
-            }
-            from = to;
+            runs.advance(function, &part, part.to, open, harm);
+            from = part.to;
         }
-        total.error = L::select(misplaced, L::from_f64(f64::INFINITY), total.error);
+        total.error = runs.checked(total.error);
         put(results, shown, first, &total, variance, pieces);
     }
 }
