@@ -116,3 +116,20 @@ fn the_comparison_fails_for_a_picture_that_is_slightly_wrong() {
     });
     assert!(off.count() > 20, "a transfer function shifted by 2 HU must break the bound");
 }
+
+#[test]
+fn what_shines_without_absorbing_is_shaded_in_few_pieces() {
+    let volume = rough_volume(14);
+    let glow =
+        |strength| Optics { extinction_per_mm: 0.0, emission_per_mm: [strength, 0.5 * strength, 0.1 * strength] };
+    let knots = vec![Knot { value: -200.0, optics: glow(0.0) }, Knot { value: 900.0, optics: glow(0.05) }];
+    let term = Term { curve: Curve::new(knots).expect("finite knots"), weight: None };
+    let scene = scene_around(&volume, vec![term], Some(two_lights(true)), [12, 12]);
+    let (tolerance, precision) = (1e-3, Precision::Estimated);
+    let (error, of_bound) = held_against_the_oracle(&volume, &scene, tolerance, precision);
+    assert!(error <= tolerance && of_bound <= 1.0, "error {error:e}, {of_bound} x the bound");
+    let tracer = tracer(&volume, &scene, tolerance, precision);
+    let rays = (0..144).map(|pixel| scene.camera.pixel_ray(pixel % 12, pixel / 12));
+    let most = rays.filter_map(|ray| tracer.trace(&ray)).map(|traced| traced.pieces).max().expect("rays that meet it");
+    assert!((1..100_000).contains(&most), "{most} pieces on a ray");
+}

@@ -269,9 +269,11 @@ impl<'a> Of<'a> {
         let Of { volume, scene, tolerance, voxel, level, precision } = self;
         let everything = [0.0, f32::MAX];
         let occupancy = voxels.occupancy(|range| !classifier.is_empty(range, everything));
-        let estimate = (lighting.is_some() && precision == Precision::Estimated).then(|| Estimate::within(tolerance));
+        let brightest = Brightest::of(scene);
+        let has_nodes = lighting.is_some() && precision == Precision::Estimated && brightest.color <= MOST_COLOR;
+        let estimate = has_nodes.then(|| Estimate::within(tolerance));
         let tolerance = estimate.map_or(tolerance, |estimate| estimate.proven);
-        let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest: Brightest::of(scene) };
+        let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest };
         let (grid, clip) = (volume.grid(), &scene.effects.clip);
         let lit = match (&lighting, estimate) {
             (None, _) => "unlit",
@@ -308,6 +310,10 @@ impl<'a> Of<'a> {
         Box::new(Kernel { frame, shading, double, single, name })
     }
 }
+
+/// What nodes miss is estimated over what is absorbed. Where something shines brighter than this over what it absorbs, and all the
+/// more where it absorbs nothing, that says little, and the bound is proven.
+const MOST_COLOR: f64 = 16.0;
 
 /// f32 is used where an interval between knots is at least this many roundings wide, over the tolerance. On public scans a
 /// ray's error by rounding was up to a thirtieth of a rounding over that width; this keeps it within the budget's share.
