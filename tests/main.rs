@@ -27,5 +27,6 @@ mod study;
 mod support;
 mod tissue;
 mod verify;
+mod views;
 mod voxels;
 mod vtk;

@@ -73,12 +73,12 @@ def scene(pellucid, view, volume, folder, lit, rounds, certify):
 
 
 def timed(pellucid, pipeline, integrate, name, result):
-    sidecar = pellucid.render(pipeline, integrate)
+    sidecar = pellucid.frames(pipeline, integrate)
     result.peak_memory_bytes[name] = max(sidecar["peak_memory_bytes"], result.peak_memory_bytes.get(name, 0))
-    stages, integrated = sidecar["seconds"], sidecar["seconds"]["integrate"]
-    result.setup_seconds[name] = sum(stages.values()) - integrated
-    result.ns_per_sample.setdefault(name, 1e9 * integrated * sidecar["threads"] / sidecar["method"]["samples"])
-    return integrated
+    result.setup_seconds[name] = sidecar["setup_seconds"]
+    frame = sidecar["frame_seconds"]
+    result.ns_per_sample.setdefault(name, 1e9 * frame * sidecar["threads"] / sidecar["method"]["samples"])
+    return frame
 
 
 def errors(pellucid, pipeline, folder, samples, step_mm, result):

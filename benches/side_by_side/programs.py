@@ -10,7 +10,7 @@ import numpy as np
 
 
 class Pellucid:
-    """The program. Seconds of a frame are those of the stage `integrate`: macrocells and all else it needs beyond the voxels."""
+    """The program, a process per measurement."""
 
     def __init__(self, program, folder, threads, size):
         self.program, self.threads, self.size = str(program), threads, size
@@ -32,8 +32,8 @@ class Pellucid:
         self.run("export-vtk", pipeline, "--set", f"image.size=[{size},{size}]", "-o", folder)
         return json.loads((folder / "scene.json").read_text())
 
-    def render(self, pipeline, integrate, output=None, size=None, threads=None, certify=0, sets=()):
-        """Renders a picture; gives its sidecar with seconds by stage and those of the whole process."""
+    def render(self, pipeline, integrate, output=None, size=None, threads=None, certify=0, sets=(), file=None):
+        """Renders a picture; gives its sidecar, or that of `file`, with seconds by stage and those of the whole process."""
         output, size = output or self.folder / "picture.png", size or self.size
         arguments = [pipeline, "-q", "--threads", threads or self.threads, "--size", f"{size}x{size}", "-o", output]
         for key in (f"integrate={integrate}", *sets):
@@ -44,19 +44,34 @@ class Pellucid:
         # A picture that is not within its tolerance is a result, too: exit code 9.
         self.run("render", *arguments, codes=(0, 9))
         seconds = time.perf_counter() - begun
-        sidecar = json.loads((output.parent / (output.name + ".json")).read_text())
-        sidecar["process_seconds"] = seconds
-        sidecar["seconds"] = {stage["stage"]: stage["seconds"] for stage in sidecar["stages"]}
-        return sidecar
+        return read_sidecar(output.with_name(file or output.name)) | {"process_seconds": seconds}
 
     def seconds(self, *arguments, **options):
+        """Seconds of the stage `integrate` of a process's only picture: macrocells and all else it needs beyond the voxels."""
         return self.render(*arguments, **options)["seconds"]["integrate"]
+
+    def frames(self, pipeline, integrate):
+        """The same view twice with one set-up, as VTK renders frame after frame. Gives the second's sidecar, with `seconds` of the
+        frame and `setup_seconds` of all that a process does before it could render one."""
+        first = self.render(pipeline, integrate, self.folder / "frame.png", sets=("views={ cameras: [{}, {}] }",), file="frame-1.png")
+        second = read_sidecar(self.folder / "frame-2.png")
+        frame = second["seconds"]["integrate"]
+        once = first["seconds"]["integrate"] - frame + sum(
+            seconds for stage, seconds in first["seconds"].items() if stage not in ("integrate", "encode")
+        )
+        return second | {"frame_seconds": frame, "setup_seconds": once}
 
     def largest_difference(self, reference, test):
         """Largest difference of a channel, linear, and how many pixels are above 1/255."""
         ran = self.run("compare", reference, test, "--tolerance", "1/255", "--format", "json", codes=(0, 9))
         comparison = json.loads(ran.stdout)["comparison"]
         return comparison["max_abs_all"], comparison["pixels_over"] / comparison["pixels"]
+
+
+def read_sidecar(picture):
+    """The sidecar of a picture, with `seconds` by stage."""
+    sidecar = json.loads((picture.parent / (picture.name + ".json")).read_text())
+    return sidecar | {"seconds": {stage["stage"]: stage["seconds"] for stage in sidecar["stages"]}}
 
 
 class VtkFrames:

@@ -33,6 +33,7 @@ impl Bar {
                 self.bar.tick();
             }
             Event::Rays(pixels) => {
+                self.bar.set_position(0);
                 self.bar.set_length(pixels as u64);
                 let template = "{spinner} {msg} {bar:40} {percent}% {elapsed} left {eta}";
                 if let Ok(style) = ProgressStyle::with_template(template) {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use pellucid::Result;
-use pellucid::pipeline::{self, Outcome};
+use pellucid::pipeline::{self, Certificate, Outcome, Sidecar};
 use pellucid::spec::Document;
 
 use super::progress::Bar;
@@ -45,31 +45,47 @@ impl Render {
         };
         let outcome = pipeline::run(&spec, &options, &|event| bar.hear(event));
         bar.clear();
-        let outcome = outcome?;
-        if !global.quiet {
-            stderr::say(&summary(&outcome));
+        let outcomes = outcome?;
+        for (view, outcome) in outcomes.iter().enumerate() {
+            if !global.quiet {
+                stderr::say(&if view == 0 { summary(outcome) } else { further(outcome) });
+            }
+            stdout::print(&outcome.picture.display().to_string())?;
         }
-        stdout::print(&outcome.picture.display().to_string())
+        Ok(())
     }
+}
+
+/// What a further view took.
+fn further(outcome: &Outcome) -> String {
+    let sidecar = &outcome.sidecar;
+    let lines = std::iter::once(times(sidecar)).chain(sidecar.certificate.iter().map(certified));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn times(sidecar: &Sidecar) -> String {
+    let times: Vec<String> = sidecar.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
+    times.join(", ")
+}
+
+fn certified(c: &Certificate) -> String {
+    let [largest, most, rms] = [c.largest_error, c.error_of_999_in_1000, c.rms_error];
+    format!("{}; largest error {largest:.2e}, 99.9 % below {most:.2e}, RMS {rms:.2e}", c.statement)
 }
 
 /// What a picture took, in a few lines.
 fn summary(outcome: &Outcome) -> String {
     let sidecar = &outcome.sidecar;
-    let times: Vec<String> = sidecar.stages.iter().map(|s| format!("{} {:.2} s", s.stage, s.seconds)).collect();
     let memory = sidecar.peak_memory_bytes.map(|bytes| format!(", at most {} MB of memory", bytes / 1_000_000));
     let clipped = &sidecar.clipped;
     let chosen = sidecar.choice.iter().map(|c| format!("integrate: {}: {}", c.rung.setting, c.because));
     let mut lines: Vec<String> = chosen.collect();
     lines.extend([
-        times.join(", "),
+        times(sidecar),
         format!("{} on {} threads{}", sidecar.method.kernel, sidecar.threads, memory.unwrap_or_default()),
         format!("{} of {} voxels below the window, {} above", clipped.below, clipped.voxels, clipped.above),
     ]);
-    lines.extend(sidecar.certificate.iter().map(|c| {
-        let [largest, most, rms] = [c.largest_error, c.error_of_999_in_1000, c.rms_error];
-        format!("{}; largest error {largest:.2e}, 99.9 % below {most:.2e}, RMS {rms:.2e}", c.statement)
-    }));
+    lines.extend(sidecar.certificate.iter().map(certified));
     lines.extend(sidecar.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.push(format!("how it was made: {}", outcome.sidecar_path.display()));
     lines.join("\n")

@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::light_volumes::LightVolumes;
+use super::Frame;
+use super::light_volumes::{LightVolumes, Transmittances};
 use super::shade::{Beam, Lit, Shader, Spot};
 use crate::classify::Rgbs;
 use crate::field::{Cell, interpolate};
 use crate::math::absorbed_f32;
 use crate::scene::{FogLaw, Haze, Light, Scene};
-use crate::volume::Volume;
 
 /// Shading, depth cue, shadows, scattering, fog and haze.
 pub(super) struct Atmosphere<'a> {
@@ -35,8 +35,10 @@ pub(super) struct Aim {
 }
 
 impl<'a> Atmosphere<'a> {
-    pub(super) fn new(volume: &'a Volume, scene: &'a Scene) -> Self {
-        let lights = LightVolumes::new(volume, scene);
+    pub(super) fn new(frame: &Frame<'a>) -> Self {
+        let Frame { volume, scene, survey, .. } = *frame;
+        let unknown = || Transmittances::unknown(volume, scene);
+        let lights = LightVolumes::new(volume, scene, survey.transmittances.get_or_init(unknown));
         let effects = &scene.effects;
         let occluded = |light: &Light| match (*light, effects.shadows) {
             (Light::Directional { towards, .. }, Some(s)) => Some((s.strength as f32, lights.light(towards)?)),

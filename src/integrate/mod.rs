@@ -1,6 +1,6 @@
 //! The volume rendering integral along each ray of a picture.
 //!
-//! [`render`] is all a caller needs. A kernel is chosen once per frame by type (voxels, transfer function, shading, or the
+//! [`render`] is all a caller needs, and [`Views`] those who want many pictures of one scene. A kernel is chosen once per frame by type (voxels, transfer function, shading, or the
 //! atmosphere where a scene has effects of light); the choices of a [`Schedule`] change how long a picture takes, never the
 //! picture.
 
@@ -14,17 +14,22 @@ mod occupancy;
 mod reference;
 mod select;
 mod shade;
+mod survey;
 mod texels;
 mod tiles;
+mod views;
 
 use std::fmt;
 
 use crate::error::{Error, Fault, Result};
 use crate::image::Image;
-use crate::plan::{Method, SampleRule};
+use crate::plan::Method;
 use crate::scene::{ClassifyAt, Model, Scene};
 use crate::simd::Level;
 use crate::volume::Volume;
+use survey::Survey;
+
+pub use views::Views;
 
 /// A picture, and what it took.
 #[derive(Debug, Clone)]
@@ -89,23 +94,7 @@ pub fn render_scheduled(
     schedule: Schedule,
     progress: Progress<'_>,
 ) -> Result<Rendered> {
-    check_combination(volume, scene, method)?;
-    let frame = Frame { volume, scene, schedule, progress };
-    match method {
-        Method::March(settings) => {
-            march::check(settings, scene, volume.grid())?;
-            match &scene.model {
-                Model::Light => select::march(&frame, settings),
-                Model::Value(model) => march::show_number(&frame, settings, model),
-                Model::Surfaces(surfaces) if settings.rule == SampleRule::WholeSteps => {
-                    select::level_changes(&frame, settings, surfaces)
-                }
-                Model::Surfaces(surfaces) => march::show_surfaces(&frame, settings, surfaces),
-            }
-        }
-        Method::Exact(settings) => exact::render(&frame, settings),
-        Method::Reference => Ok(reference::render(&frame)),
-    }
+    Views::new(volume, scene, method, schedule)?.render(progress)
 }
 
 /// Refuses what no kernel renders.
@@ -153,6 +142,8 @@ struct Frame<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
     schedule: Schedule,
+    /// What is found out of the volume, for all views.
+    survey: &'a Survey,
     progress: Progress<'a>,
 }
 

@@ -56,8 +56,8 @@ fn colors<T: Component>(frame: &Frame<'_>, settings: &March, texels: &[[T; 4]]) 
 fn at_voxels<T: Texels<f32>>(frame: &Frame<'_>, settings: &March, texels: T, kernel: String) -> Result<Rendered> {
     let dims = frame.volume.grid().dims();
     let medium = AtVoxels::new(texels, dims)?;
-    let empty_space =
-        frame.schedule.empty_space_skipping.then(|| EmptySpace::around(dims, |voxel| medium.is_lit(voxel)));
+    let around = || EmptySpace::around(dims, |voxel| medium.is_lit(voxel));
+    let empty_space = frame.schedule.empty_space_skipping.then(|| frame.survey.empty_space.get_or_init(around));
     Ok(walked(frame, settings, &OneByOne(&medium), empty_space, kernel))
 }
 
@@ -66,7 +66,7 @@ fn walked<M: Medium>(
     frame: &Frame<'_>,
     settings: &March,
     medium: &M,
-    empty_space: Option<EmptySpace>,
+    empty_space: Option<&EmptySpace>,
     name: String,
 ) -> Rendered {
     let level = if M::BY_LANES { frame.schedule.level } else { Level::Scalar };
@@ -141,15 +141,14 @@ fn by_lanes<V: Voxel + Pairs, C: ByPlace, T: LaneClassifier, S: LaneShader>(
     shader: &S,
 ) -> Result<Rendered> {
     let (grid, level) = (frame.volume.grid(), frame.schedule.level);
-    let computed = Computed::new(frame, &field, classifier);
     let units = GradientUnits::new(grid, frame.volume.rescale());
     if suits_packets(settings, grid) {
-        let (magnitude, empty_space) = computed.parts::<PACKET_BLOCKS, _, _, _>(frame, &field, classifier)?;
+        let (magnitude, empty_space) = surveyed::<PACKET_BLOCKS, _, _, _>(frame, &field, classifier)?;
         let packets = Packets { field, magnitude, units, classifier: columns, shader, empty_space, level };
         let (image, tally) = packets.render(frame, settings);
         return Ok(rendered(image, tally, name::<V, C, S>(), level));
     }
-    let (magnitude, empty_space) = computed.parts::<BLOCKS, _, _, _>(frame, &field, classifier)?;
+    let (magnitude, empty_space) = surveyed::<BLOCKS, _, _, _>(frame, &field, classifier)?;
     let medium = ByLanes { field, magnitude, units, classifier: columns, shader };
     Ok(walked(frame, settings, &medium, empty_space, name::<V, C, S>()))
 }
@@ -167,7 +166,7 @@ fn changes<V: Voxel>(frame: &Frame<'_>, settings: &March, surfaces: &[Surface], 
     let (grid, scene) = (frame.volume.grid(), frame.scene);
     let field = Trilinear::new(voxels, grid.dims())?;
     if scene.effects.change_light() {
-        let atmosphere = Atmosphere::new(frame.volume, scene);
+        let atmosphere = Atmosphere::new(frame);
         return Ok(LevelChanges::new(frame, field, surfaces, &atmosphere).render(frame, settings));
     }
     Ok(match (&scene.shading, settings.reflection) {
@@ -206,7 +205,7 @@ fn by_shader<V: Voxel, C: ByPlace>(
     classifier: &C,
 ) -> Result<Rendered> {
     if frame.scene.effects.change_light() {
-        let atmosphere = Atmosphere::new(frame.volume, frame.scene);
+        let atmosphere = Atmosphere::new(frame);
         return by_spacing(frame, settings, voxels, classifier, &atmosphere);
     }
     match (&frame.scene.shading, settings.reflection) {
@@ -244,40 +243,32 @@ fn run<V: Voxel, K: Spacing, C: ByPlace, S: Shader>(
     classifier: &C,
     shader: &S,
 ) -> Result<Rendered> {
-    let computed = Computed::new(frame, &field, classifier);
-    let (magnitude, empty_space) = computed.parts::<BLOCKS, _, _, _>(frame, &field, classifier)?;
+    let (magnitude, empty_space) = surveyed::<BLOCKS, _, _, _>(frame, &field, classifier)?;
     let units = GradientUnits::new(frame.volume.grid(), frame.volume.rescale());
     let medium = Classified { field, magnitude, units, classifier, shader };
     Ok(walked(frame, settings, &OneByOne(&medium), empty_space, name::<V, C, S>()))
 }
 
-/// What a kernel reads of a volume, and nothing else.
-struct Computed {
-    /// The gradient magnitude, HU/mm.
-    magnitudes: Option<Vec<f32>>,
-}
-
-impl Computed {
-    fn new<V: Voxel, K: Spacing, C: ByPlace>(frame: &Frame<'_>, field: &Trilinear<'_, V, K>, _: &C) -> Self {
-        let units = GradientUnits::new(frame.volume.grid(), frame.volume.rescale());
-        Computed { magnitudes: C::READS_GRADIENT.then(|| gradient_magnitude_per_mm(field, &units)) }
-    }
-
-    /// The gradient magnitude as a field, and where nothing is to be seen.
-    fn parts<const LOG2: u32, V: Voxel, K: Spacing, C: ByPlace>(
-        &self,
-        frame: &Frame<'_>,
-        field: &Trilinear<'_, V, K>,
-        classifier: &C,
-    ) -> Result<(Option<Trilinear<'_, f32>>, Option<EmptySpace>)> {
-        let magnitude = self.magnitudes.as_deref().map(|m| Trilinear::new(m, field.dims())).transpose()?;
-        // Blocks are counted in even steps.
-        let empty_space = (frame.schedule.empty_space_skipping && K::EVEN).then(|| {
+/// What a kernel reads of a volume, and nothing else: the gradient magnitude, HU/mm, as a field, and where nothing is to be seen.
+fn surveyed<'a, const LOG2: u32, V: Voxel, K: Spacing, C: ByPlace>(
+    frame: &Frame<'a>,
+    field: &Trilinear<'_, V, K>,
+    classifier: &C,
+) -> Result<(Option<Trilinear<'a, f32>>, Option<&'a EmptySpace>)> {
+    let (survey, volume) = (frame.survey, frame.volume);
+    let magnitudes = C::READS_GRADIENT.then(|| {
+        let units = || GradientUnits::new(volume.grid(), volume.rescale());
+        survey.magnitudes.get_or_init(|| gradient_magnitude_per_mm(field, &units()))
+    });
+    let magnitude = magnitudes.map(|m| Trilinear::new(m, field.dims())).transpose()?;
+    // Blocks are counted in even steps.
+    let empty_space = (frame.schedule.empty_space_skipping && K::EVEN).then(|| {
+        survey.empty_space.get_or_init(|| {
             let magnitudes = magnitude.as_ref().map(BlockRanges::<LOG2>::new);
             EmptySpace::new(&BlockRanges::<LOG2>::new(field), magnitudes.as_ref(), classifier)
-        });
-        Ok((magnitude, empty_space))
-    }
+        })
+    });
+    Ok((magnitude, empty_space))
 }
 
 fn name<V: Voxel, C: ByPlace, S: Shader>() -> String {

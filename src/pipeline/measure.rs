@@ -27,6 +27,11 @@ impl<'a> Stopwatch<'a> {
         Stopwatch { progress, stages: Vec::new() }
     }
 
+    /// Called with what happens.
+    pub(super) fn progress(&self) -> Progress<'a> {
+        self.progress
+    }
+
     /// Does a stage and notes how long it took.
     pub(super) fn time<T>(&mut self, stage: &'static str, work: impl FnOnce() -> T) -> T {
         (self.progress)(Event::Stage(stage));

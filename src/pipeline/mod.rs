@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Fault, Result};
 use crate::image::Image;
-use crate::integrate::{self, Rendered, Schedule};
+use crate::integrate::{self, Rendered, Schedule, Views};
 use crate::io::{Scan, exr, png};
 use crate::plan::{Format, LabelInfo, Output, Plan, VolumeInfo};
 use crate::simd::Level;
@@ -37,8 +37,9 @@ pub use sidecar::Sidecar;
 pub use stack::{StackOutcome, StackSidecar, composite};
 pub use study::{VtkPeer, study, write_study};
 
+use crate::study::Choice;
 use measure::Stopwatch;
-use sidecar::Made;
+use sidecar::{LabelsRecord, Made};
 
 /// What is not written in the pipeline.
 #[derive(Debug, Clone, Default)]
@@ -76,13 +77,13 @@ pub struct Outcome {
     pub sidecar: Sidecar,
 }
 
-/// Renders a pipeline and writes the picture with its sidecar, each whole or not at all.
+/// Renders a pipeline and writes its pictures, in the order of its views, each with a sidecar, and each whole or not at all.
 ///
 /// # Errors
-/// Those of each stage; nothing is written if one fails before the picture is complete. `Fault::Limit` before anything
-/// is allocated that would not fit into memory. `Fault::Tolerance` if the picture
+/// Those of each stage; nothing is written if one fails before a picture is complete. `Fault::Limit` before anything
+/// is allocated that would not fit into memory. `Fault::Tolerance` if a picture
 /// was certified and found not to be within its tolerance; then it and its sidecar are there to be looked at.
-pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Outcome> {
+pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Vec<Outcome>> {
     let mut stopwatch = Stopwatch::start(progress);
     let scan = stopwatch.time("load", || load(spec, options))?;
     let (info, plan) = stopwatch.time("plan", || planned(spec, &scan, options))?;
@@ -91,23 +92,67 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Out
     let (plan, choice) = auto::settled((spec, &info), &scan.volume, plan, options, &mut stopwatch)?;
     let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
     prepare_folder(&plan.output.path)?;
-    let rendered = stopwatch.time("integrate", || integrate(&scan, &plan, options, progress))?;
-    let pixels_sha256 = digest::of_pixels(&rendered.image);
-    let certificate = plan.certify.map(|count| {
-        stopwatch.time("certify", || Certificate::of(&rendered.image, &pixels_sha256, &scan.volume, &plan, count))
+    let shared = Shared { spec, scan: &scan, labels, choice, clipped };
+    let [_, count] = plan.view;
+    let views = Views::new(&scan.volume, &plan.scene, &plan.method, schedule(options))?;
+    if count == 1 {
+        // What is kept for further views goes as soon as the only one is rendered.
+        return Ok(vec![shared.finish(&plan, move |pixels| views.render(pixels), stopwatch)?]);
+    }
+    let first = shared.finish(&plan, |pixels| views.render(pixels), stopwatch)?;
+    let others = (1..count).map(|view| {
+        let mut stopwatch = Stopwatch::start(progress);
+        let output = options.output.as_deref();
+        let plan = stopwatch.time("plan", || plan.of_view(spec, &info, output, view))?;
+        shared.finish(&plan, |pixels| views.render_scene(&plan.scene, pixels), stopwatch)
     });
-    stopwatch.time("encode", || {
-        encode(&rendered.image, &plan.output, &texts(&rendered.statistics.kernel, &pixels_sha256))
-    })?;
-    let made =
-        Made { labels, choice, clipped, rendered: &rendered, pixels_sha256, certificate, stages: stopwatch.finish() };
-    let sidecar = Sidecar::new(spec, &scan, &plan, made);
-    let sidecar_path = sidecar.write_beside(&plan.output.path)?;
-    refuse_above_tolerance(&plan.output.path, sidecar.certificate.as_ref())?;
-    Ok(Outcome { picture: plan.output.path, sidecar_path, sidecar })
+    std::iter::once(Ok(first)).chain(others).collect()
 }
 
-/// Renders a pipeline and writes nothing.
+/// What all pictures of a run share.
+struct Shared<'a> {
+    spec: &'a Spec,
+    scan: &'a Scan,
+    labels: Option<LabelsRecord>,
+    choice: Option<Choice>,
+    clipped: Clipped,
+}
+
+impl Shared<'_> {
+    /// Renders a view, and writes its picture and its sidecar.
+    fn finish(
+        &self,
+        plan: &Plan,
+        render: impl FnOnce(integrate::Progress<'_>) -> Result<Rendered>,
+        mut stopwatch: Stopwatch<'_>,
+    ) -> Result<Outcome> {
+        let Shared { spec, scan, .. } = *self;
+        let progress = stopwatch.progress();
+        let rendered = stopwatch.time("integrate", || watched(plan, progress, render))?;
+        let pixels_sha256 = digest::of_pixels(&rendered.image);
+        let certificate = plan.certify.map(|count| {
+            stopwatch.time("certify", || Certificate::of(&rendered.image, &pixels_sha256, &scan.volume, plan, count))
+        });
+        stopwatch.time("encode", || {
+            encode(&rendered.image, &plan.output, &texts(&rendered.statistics.kernel, &pixels_sha256))
+        })?;
+        let made = Made {
+            labels: self.labels.clone(),
+            choice: self.choice.clone(),
+            clipped: self.clipped.clone(),
+            rendered: &rendered,
+            pixels_sha256,
+            certificate,
+            stages: stopwatch.finish(),
+        };
+        let sidecar = Sidecar::new(spec, scan, plan, made);
+        let sidecar_path = sidecar.write_beside(&plan.output.path)?;
+        refuse_above_tolerance(&plan.output.path, sidecar.certificate.as_ref())?;
+        Ok(Outcome { picture: plan.output.path.clone(), sidecar_path, sidecar })
+    }
+}
+
+/// Renders a pipeline, of several views the first, and writes nothing.
 ///
 /// # Errors
 /// Those of each stage.
@@ -118,7 +163,8 @@ pub fn picture(spec: &Spec, progress: Progress<'_>) -> Result<Rendered> {
     memory::check(&plan, &options)?;
     let (scan, _) = mask::classified(scan, &plan, &mut stopwatch)?;
     let (plan, _) = auto::settled((spec, &info), &scan.volume, plan, &options, &mut stopwatch)?;
-    integrate(&scan, &plan, &options, progress)
+    let views = Views::new(&scan.volume, &plan.scene, &plan.method, schedule(&options))?;
+    watched(&plan, progress, |pixels| views.render(pixels))
 }
 
 /// The plan for a scan as [`plan`] makes it; where the pipeline leaves the method to measurements, these are made.
@@ -152,11 +198,18 @@ fn planned(spec: &Spec, scan: &Scan, options: &Options) -> Result<(VolumeInfo, P
     Ok((info, plan))
 }
 
-fn integrate(scan: &Scan, plan: &Plan, options: &Options, progress: Progress<'_>) -> Result<Rendered> {
+fn schedule(options: &Options) -> Schedule {
+    Schedule { level: options.level.unwrap_or_else(Level::widest), ..Schedule::default() }
+}
+
+/// Renders and says how far it is.
+fn watched(
+    plan: &Plan,
+    progress: Progress<'_>,
+    render: impl FnOnce(integrate::Progress<'_>) -> Result<Rendered>,
+) -> Result<Rendered> {
     progress(Event::Rays(plan.scene.camera.size().iter().product()));
-    let pixels = |count| progress(Event::Pixels(count));
-    let schedule = Schedule { level: options.level.unwrap_or_else(Level::widest), ..Schedule::default() };
-    integrate::render_scheduled(&scan.volume, &plan.scene, &plan.method, schedule, &pixels)
+    render(&|count| progress(Event::Pixels(count)))
 }
 
 /// What the picture's file says of itself, for those who have lost its sidecar.

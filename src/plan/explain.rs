@@ -40,6 +40,10 @@ pub fn explain(plan: &Plan) -> String {
     }
     line(&mut text, "behind", &describe_background(plan.scene.background));
     line(&mut text, "camera", &describe_camera(&plan.scene.camera));
+    let [view, views] = plan.view;
+    if views > 1 {
+        line(&mut text, "view", &format!("{} of {views} with one set-up", view + 1));
+    }
     line(&mut text, "output", &plan.output.path.display().to_string());
     if !plan.not_computed.is_empty() {
         text.push_str("\nnot computed\n");
@@ -199,6 +203,7 @@ pub fn plan_json(plan: &Plan) -> Value {
         "method": plan.method,
         "chosen_because": plan.chosen.as_ref().map(|chosen| chosen.because.as_str()),
         "certify": plan.certify,
+        "view": plan.view,
         "output": { "path": plan.output.path, "format": plan.output.format },
         "not_computed": plan.not_computed,
         "warnings": plan.warnings

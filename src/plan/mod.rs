@@ -50,7 +50,7 @@ use std::path::Path;
 use crate::demand::Demand;
 use crate::error::Result;
 use crate::scene::{Effects, Scene, Shading};
-use crate::spec::Spec;
+use crate::spec::{Spec, ViewsSpec};
 use crate::transfer::TransferFunction;
 use crate::volume::{Grid, RgbaEncoding};
 
@@ -71,6 +71,8 @@ pub struct Plan {
     pub label_classes: Option<LabelClasses>,
     /// What the stages together read of the volume.
     pub demand: Demand,
+    /// Which of the pipeline's views it is, counted from 0, and how many there are.
+    pub view: [usize; 2],
     /// The file to write.
     pub output: Output,
     /// How many random pixels the oracle recomputes.
@@ -88,14 +90,14 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Resolves a spec for a volume whose values are [interpreted](Spec::interpret); `output` is a picture's path in
-    /// place of the spec's, relative to the working directory.
+    /// Resolves a spec for a volume whose values are [interpreted](Spec::interpret), of several views for the first; `output` is a
+    /// picture's path in place of the spec's, relative to the working directory.
     ///
     /// # Errors
     /// `Fault::Spec` for what only the volume shows to be impossible, such as a preset in HU for values that are not,
     /// and for a picture whose suffix names no format.
     pub fn new(spec: &Spec, volume: &VolumeInfo, output: Option<&Path>) -> Result<Self> {
-        Plan::with(spec, volume, output, integrator::resolve(spec, volume), None)
+        Plan::with((spec, 0), volume, output, integrator::resolve(spec, volume), None)
     }
 
     /// The same by a method that measurements have chosen (`integrate: auto`).
@@ -109,17 +111,26 @@ impl Plan {
         method: Method,
         chosen: Chosen,
     ) -> Result<Self> {
-        Plan::with(spec, volume, output, method, Some(chosen))
+        Plan::with((spec, 0), volume, output, method, Some(chosen))
+    }
+
+    /// The same for another of the pipeline's views, counted from 0.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn of_view(&self, spec: &Spec, volume: &VolumeInfo, output: Option<&Path>, view: usize) -> Result<Self> {
+        Plan::with((spec, view), volume, output, self.method.clone(), self.chosen.clone())
     }
 
     fn with(
-        spec: &Spec,
+        (spec, view): (&Spec, usize),
         volume: &VolumeInfo,
         output: Option<&Path>,
         method: Method,
         chosen: Option<Chosen>,
     ) -> Result<Self> {
-        let output = Output::resolve(spec, output)?;
+        let views = spec.pipeline.views.as_ref().map_or(1, ViewsSpec::count);
+        let output = Output::resolve(spec, output)?.of_view(view, views);
         let colors = colors::resolve(spec, volume)?;
         let [window, gradient_range] = layers::domain(&spec.pipeline);
         let light = light::resolve(spec);
@@ -127,7 +138,7 @@ impl Plan {
         let terms = layers.iter().flat_map(|layer| layer.terms.iter().cloned()).collect();
         let mask = mask::resolve(spec, volume, (window, gradient_range[1]), light.scales)?;
         let (mask, label_classes) = mask.map(|m| (m.mask, m.classes)).unzip();
-        let camera = camera::resolve(spec, &volume.grid)?;
+        let camera = camera::resolve(spec, &volume.grid, view)?;
         let surroundings = Surroundings {
             grid: &volume.grid,
             camera: &camera,
@@ -161,6 +172,7 @@ impl Plan {
             colors,
             label_classes,
             demand,
+            view: [view, views],
             output,
             certify: spec.pipeline.certify.map(|pixels| pixels as usize),
             reading_bytes: volume.reading_bytes,
@@ -205,13 +217,16 @@ impl Plan {
     }
 
     /// What is going on when most memory is held, and how many bytes that is: while the scan is read; while it is
-    /// rendered, from volume and fields into pixels; or while these are encoded, when the fields are gone.
+    /// rendered, from volume and fields into pixels; or while these are encoded, when the fields are gone unless more views follow.
     pub fn peak(&self) -> (&'static str, u64) {
         let of = |names: &[&str]| -> u64 {
             self.stages.iter().filter(|stage| names.contains(&stage.name)).map(|stage| stage.bytes).sum()
         };
         let rendering = of(&["volume", "mask", "field", "classify", "light", "integrate"]);
-        let writing = of(&["volume", "mask", "integrate", "image"]);
+        let [_, views] = self.view;
+        // What the next view needs, too, is kept.
+        let kept = if views > 1 { of(&["field", "classify", "light"]) } else { 0 };
+        let writing = of(&["volume", "mask", "integrate", "image"]) + kept;
         let phases = [("reading the scan", self.reading_bytes), ("rendering", rendering), ("writing", writing)];
         phases.into_iter().max_by_key(|(_, bytes)| *bytes).unwrap_or_default()
     }

@@ -35,6 +35,18 @@ impl Output {
         Output::at(path, bits)
     }
 
+    /// The file of a view, of so many: `head-03.png` for the third of 36 views of `head.png`; the file itself if there is one view.
+    pub(super) fn of_view(self, view: usize, views: usize) -> Self {
+        if views == 1 {
+            return self;
+        }
+        let [stem, suffix] = [self.path.file_stem(), self.path.extension()];
+        let [stem, suffix] = [stem, suffix].map(|part| part.unwrap_or_default().to_string_lossy().into_owned());
+        let digits = views.to_string().len();
+        let path = self.path.with_file_name(format!("{stem}-{:0digits$}.{suffix}", view + 1));
+        Output { path, ..self }
+    }
+
     /// The file of this name, with so many bits per channel if it is a PNG.
     pub(super) fn at(path: PathBuf, bits: Bits) -> Result<Self> {
         let suffix = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();

@@ -28,6 +28,7 @@ mod stack;
 mod suggest;
 mod tree;
 mod typed;
+mod views;
 mod widget;
 
 pub use analytic::{AnalyticSpec, FieldSpec, MarschnerLobbSpec, RampSpec, SphereSpec, TorusSpec};
@@ -53,6 +54,7 @@ pub use preset::{Preset, Tissue};
 pub use reference::{LabelRange, ReferenceTissues};
 pub use schema::{pipeline_schema, preset_schema, stack_schema};
 pub use stack::{AlphaName, Document, Stack, StackImageSpec, StackSpec};
+pub use views::{TurntableSpec, ViewsSpec};
 pub use widget::{
     ContourSpec, EllipseSpec, EmissionSpec, GaussianSpec, PointSpec, RectangleSpec, TrapezoidSpec, TriangleSpec, Widget,
 };

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AnalyticSpec, CameraSpec, CleanSpec, Color, EffectsSpec, IntegrateSpec, Widget};
+use super::{AnalyticSpec, CameraSpec, CleanSpec, Color, EffectsSpec, IntegrateSpec, ViewsSpec, Widget};
 
 /// A pipeline: which scan, what of it shows, from where, how exactly it is integrated, and the picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,6 +39,9 @@ pub struct Pipeline {
     /// From where; the whole volume from the front by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraSpec>,
+    /// From several sides, a picture each; from one by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub views: Option<ViewsSpec>,
     /// How the volume rendering integral is computed; `exact` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integrate: Option<IntegrateSpec>,

@@ -38,7 +38,7 @@ use crate::simd::{Level, Pairs};
 use crate::volume::{Samples, Volume};
 
 use super::classify_voxels::classify_voxels;
-use super::light_volumes::LightVolumes;
+use super::light_volumes::{LightVolumes, Transmittances};
 use super::texels::{Component, Rgba};
 use super::tiles::{self, Radiance};
 use super::{Rendered, Statistics};
@@ -57,23 +57,37 @@ use stream::{Estimate, Fields, Function, Lighting, OfValue, OfValueAndMagnitude,
 pub use ray::Traced;
 pub(super) use toward_light::{TowardLight, toward_light};
 
-/// Renders within a tolerance.
+/// Checks settings.
 ///
 /// # Errors
 /// `Fault::Spec` for a tolerance that is not a number above 0.
-pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rendered> {
+pub(super) fn check(settings: &Exact) -> Result<()> {
     let tolerance = settings.tolerance;
-    if !(tolerance.is_finite() && tolerance > 0.0) {
-        return Err(Error::new(Fault::Spec, "the tolerance is not usable")
-            .element("integrate.exact.tolerance")
-            .found(tolerance.to_string())
-            .expected("a finite number above 0, such as 1/255"));
+    if tolerance.is_finite() && tolerance > 0.0 {
+        return Ok(());
     }
+    Err(Error::new(Fault::Spec, "the tolerance is not usable")
+        .element("integrate.exact.tolerance")
+        .found(tolerance.to_string())
+        .expected("a finite number above 0, such as 1/255"))
+}
+
+/// The tracer for a scene; of views from several cameras, any is as good as the others.
+pub(super) fn frame_tracer<'a>(
+    level: Level,
+    volume: &'a Volume,
+    scene: &'a Scene,
+    settings: &Exact,
+) -> Box<dyn Tracer + 'a> {
     let precision = match settings.bound {
         Bound::Estimated => Precision::Estimated,
         Bound::Proven => Precision::Single,
     };
-    let tracer = tracer_at(frame.schedule.level, frame.volume, frame.scene, tolerance, precision);
+    tracer_at(level, volume, scene, settings.tolerance, precision)
+}
+
+/// Renders with a tracer.
+pub(super) fn render(frame: &super::Frame<'_>, tracer: &dyn Tracer) -> Rendered {
     let (image, tally) = tiles::render_whole(frame, &|count, ray, put| {
         tracer.trace_all(count, ray, &mut |n, traced| {
             let Traced { radiance, transmittance, pieces, bound, .. } = traced;
@@ -86,7 +100,7 @@ pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rende
         rays: tally.rays,
         kernel: tracer.kernel().to_string(),
     };
-    Ok(Rendered { image, statistics })
+    Rendered { image, statistics }
 }
 
 /// In which arithmetic a kernel integrates its pieces, and what is known of their errors; rays are set up and summed in f64 by
@@ -301,7 +315,7 @@ impl<'a> Of<'a> {
         }
         let frame = Frame { domain, tolerance, brightest: Brightest::of(scene) };
         if scene.effects.change_light() {
-            let lights = LightVolumes::new(volume, scene);
+            let lights = LightVolumes::new(volume, scene, &Transmittances::unknown(volume, scene));
             let name = name("atmosphere", "f64");
             return Box::new(atmosphere::Kernel { frame, scene, medium: double, lights, name });
         }

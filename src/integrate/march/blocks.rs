@@ -5,7 +5,7 @@ use crate::integrate::empty_space::{Leap, widened};
 
 /// Ranges of stored values, with what rounding makes of interpolated ones.
 #[derive(Debug, Clone)]
-pub(super) struct Blocks {
+pub(in super::super) struct Blocks {
     blocks: [usize; 3],
     ranges: Vec<[f32; 2]>,
 }

@@ -28,12 +28,12 @@ pub(super) trait Gather: Sync {
 }
 
 /// The largest value.
-pub(super) struct Largest {
+pub(super) struct Largest<'a> {
     pub(super) sign: f32,
-    pub(super) blocks: Option<Blocks>,
+    pub(super) blocks: Option<&'a Blocks>,
 }
 
-impl Gather for Largest {
+impl Gather for Largest<'_> {
     type Gathered = f32;
 
     fn start(&self) -> f32 {
@@ -47,7 +47,7 @@ impl Gather for Largest {
 
     #[inline(always)]
     fn leap(&self, &most: &f32, position: Position, pace: &Pace) -> Option<Leap> {
-        let blocks = self.blocks.as_ref()?;
+        let blocks = self.blocks?;
         Some(blocks.leap(position, pace, |range| largest(self.sign, range) > most))
     }
 
@@ -57,12 +57,12 @@ impl Gather for Largest {
 }
 
 /// The first local maximum: [`crate::scene::ValueOf::LocalMaximum`] of the samples.
-pub(super) struct FirstMaximum {
+pub(super) struct FirstMaximum<'a> {
     pub(super) sign: f32,
     pub(super) threshold: f32,
     /// The fall that ends a maximum.
     pub(super) fall: f32,
-    pub(super) blocks: Option<Blocks>,
+    pub(super) blocks: Option<&'a Blocks>,
 }
 
 /// The largest value so far, and whether it has fallen from there.
@@ -75,13 +75,13 @@ pub(super) struct Summit {
 /// Roundings that an interpolated value may have suffered.
 const ROUNDINGS: f32 = 8.0;
 
-impl FirstMaximum {
+impl FirstMaximum<'_> {
     fn counts(&self, value: f32) -> bool {
         value >= self.sign * self.threshold
     }
 }
 
-impl Gather for FirstMaximum {
+impl Gather for FirstMaximum<'_> {
     type Gathered = Summit;
 
     fn start(&self) -> Summit {
@@ -102,7 +102,7 @@ impl Gather for FirstMaximum {
 
     #[inline(always)]
     fn leap(&self, summit: &Summit, position: Position, pace: &Pace) -> Option<Leap> {
-        let blocks = self.blocks.as_ref()?;
+        let blocks = self.blocks?;
         // Below the threshold only what is larger than all before matters; above it every fall does.
         let matters = |range| self.counts(summit.most) || largest(self.sign, range) > summit.most;
         Some(blocks.leap(position, pace, matters))
@@ -119,9 +119,9 @@ impl Gather for FirstMaximum {
 
 /// The integral over the length, stored units times mm; by the trapezoid rule, or by one sample for each interval. Summed
 /// in f64, so that short steps lose nothing.
-pub(super) struct Integral<const TRAPEZOID: bool> {
+pub(super) struct Integral<'a, const TRAPEZOID: bool> {
     /// Where nothing but 0 is integrated.
-    pub(super) empty_space: Option<EmptySpace>,
+    pub(super) empty_space: Option<&'a EmptySpace>,
 }
 
 /// The sum so far, and the sample before.
@@ -131,7 +131,7 @@ pub(super) struct Sum {
     before: f64,
 }
 
-impl<const TRAPEZOID: bool> Gather for Integral<TRAPEZOID> {
+impl<const TRAPEZOID: bool> Gather for Integral<'_, TRAPEZOID> {
     type Gathered = Sum;
 
     fn start(&self) -> Sum {
@@ -153,7 +153,7 @@ impl<const TRAPEZOID: bool> Gather for Integral<TRAPEZOID> {
 
     #[inline(always)]
     fn leap(&self, _sum: &Sum, position: Position, pace: &Pace) -> Option<Leap> {
-        Some(self.empty_space.as_ref()?.leap(position, pace))
+        Some(self.empty_space?.leap(position, pace))
     }
 
     fn pass(&self, sum: &mut Sum, delta_mm: f64) {

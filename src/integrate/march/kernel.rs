@@ -21,7 +21,7 @@ use crate::simd::{self, Lanes, Level};
 pub(in super::super) struct Kernel<'a, M> {
     pub(in super::super) medium: &'a M,
     /// `None` to take every sample.
-    pub(in super::super) empty_space: Option<EmptySpace>,
+    pub(in super::super) empty_space: Option<&'a EmptySpace>,
     /// The registers that it runs with.
     pub(in super::super) level: Level,
 }
@@ -69,7 +69,7 @@ impl<M: Medium> Kernel<'_, M> {
     /// How many samples from number `visited` on, the first of a batch, are surely in empty blocks, as whole batches.
     #[inline(always)]
     fn empty_batches(&self, line: &Line<'_>, visited: usize) -> usize {
-        let Some(space) = &self.empty_space else { return 0 };
+        let Some(space) = self.empty_space else { return 0 };
         let mut at = visited;
         while at < line.samples() {
             let leap = space.leap(line.position(at), &line.pace);

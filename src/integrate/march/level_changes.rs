@@ -27,7 +27,7 @@ pub(in super::super) struct LevelChanges<'a, V, S> {
     levels: Vec<(f32, Rgbs<f32>)>,
     shader: &'a S,
     /// Blocks of cells that no level crosses; `None` to take every sample.
-    without_levels: Option<EmptySpace>,
+    without_levels: Option<&'a EmptySpace>,
 }
 
 /// A ray on its way.
@@ -41,7 +41,7 @@ struct Walk {
 impl<'a, V: Voxel, S: Shader> LevelChanges<'a, V, S> {
     /// Changes of these levels.
     pub(in super::super) fn new(
-        frame: &Frame<'_>,
+        frame: &Frame<'a>,
         field: Trilinear<'a, V>,
         surfaces: &[Surface],
         shader: &'a S,
@@ -56,7 +56,8 @@ impl<'a, V: Voxel, S: Shader> LevelChanges<'a, V, S> {
         levels.sort_by(|a, b| a.0.total_cmp(&b.0));
         let without_levels = frame.schedule.empty_space_skipping.then(|| {
             let crossed = |[low, high]: [f32; 2]| levels.iter().any(|&(l, _)| low <= sign * l && sign * l <= high);
-            EmptySpace::by_values(&Macrocells::new(&field), crossed)
+            let by_values = || EmptySpace::by_values(&Macrocells::new(&field), crossed);
+            frame.survey.empty_space.get_or_init(by_values)
         });
         let units = GradientUnits::new(frame.volume.grid(), rescale);
         LevelChanges { field, units, sign, levels, shader, without_levels }
@@ -89,7 +90,7 @@ impl<'a, V: Voxel, S: Shader> LevelChanges<'a, V, S> {
         while visited < stretch.samples && !walk.light.is_spent() {
             let position = first.advanced(pace.step, visited);
             let from_origin_mm = chord.entry_mm + stretch.first_mm + visited as f64 * stretch.delta_mm;
-            let leap = match &self.without_levels {
+            let leap = match self.without_levels {
                 Some(space) => space.leap(position, &pace),
                 None => Leap { active: true, samples: 1 },
             };

@@ -27,6 +27,7 @@ mod surfaces;
 mod voxels;
 mod whole_steps;
 
+pub(super) use blocks::Blocks;
 pub(super) use by_place::{ByPlace, Masked};
 pub(super) use jitter::hash;
 pub(super) use kernel::Kernel;

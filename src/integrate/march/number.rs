@@ -32,7 +32,8 @@ fn by_number<V: Voxel>(frame: &Frame<'_>, settings: &March, model: &ValueModel, 
     let field = Trilinear::new(voxels, frame.volume.grid().dims())?;
     let rescale = frame.volume.rescale();
     let sign = if rescale.slope < 0.0 { -1.0 } else { 1.0 };
-    let blocks = || frame.schedule.empty_space_skipping.then(|| Blocks::new(&field));
+    let survey = frame.survey;
+    let blocks = || frame.schedule.empty_space_skipping.then(|| survey.blocks.get_or_init(|| Blocks::new(&field)));
     let value = |stored: f64, _: f64| rescale.value(stored);
     let of = Of { frame, settings, model, name: format!("march/{}/{}/f32", V::NAME, model.of.name()) };
     Ok(match model.of {
@@ -67,11 +68,14 @@ fn optical_depth<V: Voxel, C: Classifier<f32>>(
 ) -> Result<Rendered> {
     let (frame, grid) = (of.frame, of.frame.volume.grid());
     let units = GradientUnits::new(grid, frame.volume.rescale());
-    let magnitudes = C::READS_GRADIENT.then(|| gradient_magnitude_per_mm(&field, &units));
-    let magnitude = magnitudes.as_deref().map(|m| Trilinear::new(m, grid.dims())).transpose()?;
+    let found = || gradient_magnitude_per_mm(&field, &units);
+    let magnitudes = C::READS_GRADIENT.then(|| frame.survey.magnitudes.get_or_init(found));
+    let magnitude = magnitudes.map(|m| Trilinear::new(m, grid.dims())).transpose()?;
     let empty_space = frame.schedule.empty_space_skipping.then(|| {
-        let magnitudes = magnitude.as_ref().map(Macrocells::new);
-        EmptySpace::new(&Macrocells::new(&field), magnitudes.as_ref(), classifier)
+        frame.survey.empty_space.get_or_init(|| {
+            let magnitudes = magnitude.as_ref().map(Macrocells::new);
+            EmptySpace::new(&Macrocells::new(&field), magnitudes.as_ref(), classifier)
+        })
     });
     let name = format!("march/{}/{classifier_name}/{}/f32", V::NAME, of.model.of.name());
     let probe = Extinction { field, magnitude, classifier };
@@ -91,7 +95,7 @@ impl Of<'_> {
     fn integrate<P: Probe>(
         self,
         probe: P,
-        empty_space: Option<EmptySpace>,
+        empty_space: Option<&EmptySpace>,
         number: impl Fn(f64, f64) -> f64 + Sync,
     ) -> Rendered {
         match self.settings.rule {

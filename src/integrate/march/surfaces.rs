@@ -31,7 +31,8 @@ fn show<V: Voxel>(frame: &Frame<'_>, settings: &March, surfaces: &[Surface], vox
     let levels: Vec<f64> = surfaces.iter().map(|surface| rescale.stored(surface.value)).collect();
     let without_levels = frame.schedule.empty_space_skipping.then(|| {
         let crossed = |[low, high]: [f32; 2]| levels.iter().any(|&l| f64::from(low) <= l && l <= f64::from(high));
-        EmptySpace::by_values(&Macrocells::new(&field), crossed)
+        let by_values = || EmptySpace::by_values(&Macrocells::new(&field), crossed);
+        frame.survey.empty_space.get_or_init(by_values)
     });
     let kernel = Kernel {
         field,
@@ -75,7 +76,7 @@ struct Kernel<'a, V> {
     /// A ray stops below this transmittance.
     stop_below: f64,
     /// Blocks of cells that no level crosses; `None` to take every sample.
-    without_levels: Option<EmptySpace>,
+    without_levels: Option<&'a EmptySpace>,
 }
 
 /// A sample: its place, mm from the entry, and its stored value.
@@ -111,7 +112,7 @@ impl<V: Voxel> Kernel<'_, V> {
         let mut visited = 0;
         while visited < stretch.samples && !self.is_spent(walk) {
             let left = stretch.samples - visited;
-            let leap = match &self.without_levels {
+            let leap = match self.without_levels {
                 Some(space) => space.leap(first.advanced(pace.step, visited), &pace),
                 None => Leap { active: true, samples: left },
             };

@@ -2,10 +2,33 @@
 
 use super::{Check, join};
 use crate::error::Result;
-use crate::spec::{CameraSpec, ProjectionName};
+use crate::spec::{CameraSpec, ProjectionName, ViewsSpec};
 
-pub(super) fn check_camera(check: Check<'_>, camera: &CameraSpec) -> Result<()> {
-    let path = |key| join("camera", key);
+/// More than this many views are a mistake.
+const MOST_VIEWS: usize = 10_000;
+
+/// Checks views, of which `camera` is what they share.
+pub(super) fn check_views(check: Check<'_>, camera: Option<&CameraSpec>, views: &ViewsSpec) -> Result<()> {
+    let camera = camera.cloned().unwrap_or_default();
+    let within = (1..=MOST_VIEWS).contains(&views.count());
+    match views {
+        ViewsSpec::Cameras(cameras) => {
+            check.require("views.cameras", within, "1 to 10000 cameras")?;
+            (0..cameras.len()).try_for_each(|view| {
+                check_camera(check, &format!("views.cameras.{view}"), &views.camera(&camera, view))
+            })
+        }
+        ViewsSpec::Turntable(_) => {
+            check.require("views.turntable.pictures", within, "1 to 10000 pictures")?;
+            let placed = camera.position_mm.is_some();
+            check.unread("views.turntable", placed, "the camera is placed by position_mm and target_mm; give cameras")
+        }
+    }
+}
+
+/// Checks a camera written at `path`.
+pub(super) fn check_camera(check: Check<'_>, path: &str, camera: &CameraSpec) -> Result<()> {
+    let path = |key| join(path, key);
     let placed = camera.position_mm.is_some() || camera.target_mm.is_some();
     if placed {
         check.needed(&path("target_mm"), camera.target_mm.is_some(), "target_mm, which position_mm needs")?;

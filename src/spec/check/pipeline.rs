@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::analytic::check_analytic;
-use super::camera::check_camera;
+use super::camera::{check_camera, check_views};
 use super::clean::check_clean;
 use super::effects::{check_effects, check_what_shows};
 use super::light::check_emission;
@@ -43,7 +43,10 @@ pub(in crate::spec) fn check_pipeline(source: &Source, pipeline: &Pipeline) -> R
         }
     }
     if let Some(camera) = &pipeline.camera {
-        check_camera(check, camera)?;
+        check_camera(check, "camera", camera)?;
+    }
+    if let Some(views) = &pipeline.views {
+        check_views(check, pipeline.camera.as_ref(), views)?;
     }
     if let Some(integrate) = &pipeline.integrate {
         check_integrate(check, integrate)?;

@@ -43,7 +43,7 @@ pub(in super::super) struct Packets<'a, V, C, S> {
     pub(in super::super) classifier: &'a C,
     pub(in super::super) shader: &'a S,
     /// `None` to take every sample.
-    pub(in super::super) empty_space: Option<EmptySpace>,
+    pub(in super::super) empty_space: Option<&'a EmptySpace>,
     /// The registers that it runs with.
     pub(in super::super) level: Level,
 }
@@ -138,7 +138,7 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Tile<'_, '_, V, C, S> {
                 pieces.add(&chord, stretch, self.kernel.field.dims());
                 // Lanes are for pieces of some length; most single samples at the border show nothing.
                 let is_empty = |space: &EmptySpace| !space.is_active(pieces.last_corner());
-                if stretch.samples == 1 && self.kernel.empty_space.as_ref().is_some_and(is_empty) {
+                if stretch.samples == 1 && self.kernel.empty_space.is_some_and(is_empty) {
                     pieces.take_back();
                     continue;
                 }
@@ -167,7 +167,7 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> simd::Kernel for Flight
         tile.cut(scratch);
         let Scratch { pieces, lights, halves, visible, .. } = scratch;
         let kernel = tile.kernel;
-        runs::find::<L>(pieces, kernel.empty_space.as_ref());
+        runs::find::<L>(pieces, kernel.empty_space);
         let mut groups = [(); GROUPS].map(
             #[inline(always)]
             |()| Group::<L> { walk: Walk::new(), light: Light::new() },

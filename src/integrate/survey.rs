@@ -1,0 +1,21 @@
+//! What is found out about a volume and what shows of it, whatever the view.
+
+use std::sync::OnceLock;
+
+use super::empty_space::EmptySpace;
+use super::light_volumes::Transmittances;
+use super::march::Blocks;
+
+/// Found out by the first view that needs it, and read by all that follow: the views of one volume under one transfer function, by
+/// one method. What a kernel does not read is never found out.
+#[derive(Default)]
+pub(super) struct Survey {
+    /// The gradient magnitude at the voxels, HU/mm.
+    pub(super) magnitudes: OnceLock<Vec<f32>>,
+    /// Where nothing shows.
+    pub(super) empty_space: OnceLock<EmptySpace>,
+    /// The values of blocks.
+    pub(super) blocks: OnceLock<Blocks>,
+    /// What gets through to the lights.
+    pub(super) transmittances: OnceLock<Transmittances>,
+}
