@@ -17,6 +17,7 @@
 
 mod batch;
 mod chord;
+mod chords;
 mod corners;
 mod gradient;
 mod lanes;
@@ -29,6 +30,7 @@ mod voxel;
 
 pub use batch::{Batch, MOST_VOXELS_PER_STEP, Offsets, SAMPLES, offsets};
 pub use chord::Chord;
+pub use chords::Chords;
 pub use corners::Corners;
 pub use gradient::GradientUnits;
 pub use macrocell::{BLOCK_CELLS, BlockRanges, Macrocells};

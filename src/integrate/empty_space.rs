@@ -1,7 +1,8 @@
 //! Empty-space skipping: how far a ray can go until something absorbs or emits again.
 //!
 //! For each block of cells the distance, in blocks, to the nearest active one (Chebyshev distance, as Deakin and Knoll
-//! 2019); a ray then leaps over whole neighbourhoods. Samples are on the same lattice with and without: a leap counts
+//! 2019), and for each active one to the nearest empty one; a ray then leaps over whole neighbourhoods, and looks around no more
+//! often inside what shows. Samples are on the same lattice with and without: a leap counts
 //! steps, exactly, and what it leaps over would have added 0.
 
 use rayon::prelude::*;
@@ -10,16 +11,19 @@ use super::march::ByPlace;
 use crate::field::{BLOCK_CELLS, BlockRanges, Macrocells, Pace, Position};
 use crate::simd::{Ints, Lanes};
 
-/// Distances to the nearest active block.
+/// How far around each block all blocks are like it.
 #[derive(Debug, Clone)]
 pub(super) struct EmptySpace {
     blocks: [usize; 3],
     /// Base-2 logarithm of the cells per axis of a block.
     log2_cells: u32,
-    /// 0 for an active block; `d` if all blocks nearer than `d` are empty. Three bytes more than blocks, so that four can be
-    /// read at any of them.
-    distance: Vec<u8>,
+    /// `d`, from 1 on, if all blocks nearer than `d` are empty; [`ACTIVE`] more if all of them are active. Three bytes more than
+    /// blocks, so that four can be read at any of them.
+    alike: Vec<u8>,
 }
+
+/// Added to the distances of active blocks; larger than any.
+const ACTIVE: u8 = 128;
 
 /// A stretch of equal steps that is all in active blocks, or all in empty ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,34 +70,32 @@ impl EmptySpace {
     }
 
     fn from_active(blocks: [usize; 3], log2_cells: u32, active: &[bool]) -> Self {
-        let mut distance: Vec<u8> = active.iter().map(|&a| if a { 0 } else { u8::MAX }).collect();
-        // Chessboard distance in two passes over the neighbours already seen (Rosenfeld and Pfaltz 1966).
-        let mut rows = Rows::new(blocks, &mut distance);
-        let [_, ny, nz] = blocks.map(|n| n as isize);
-        let in_order = |row: isize| [row % ny, row / ny];
-        (0..ny * nz).map(in_order).for_each(|[j, k]| rows.lower(j, k, 1));
-        (0..ny * nz).rev().map(in_order).for_each(|[j, k]| rows.lower(j, k, -1));
-        distance.extend([0; 3]);
-        EmptySpace { blocks, log2_cells, distance }
+        let (to_active, to_empty) = (distances(blocks, active, true), distances(blocks, active, false));
+        let beside = to_active.into_iter().zip(to_empty);
+        let alike = beside.map(|(to_active, to_empty)| match to_active {
+            0 => ACTIVE + to_empty.min(ACTIVE - 1),
+            distance => distance.min(ACTIVE - 1),
+        });
+        EmptySpace { blocks, log2_cells, alike: alike.chain([0; 3]).collect() }
     }
 
     /// How many samples at this pace, from `position` on, are in active blocks, or surely in empty ones.
     #[inline(always)]
     pub(super) fn leap(&self, position: Position, pace: &Pace) -> Leap {
         let [i, j, k] = position.block(self.log2_cells);
-        let distance = self.distance[i + self.blocks[0] * (j + self.blocks[1] * k)];
-        let reach = i64::from(distance.max(1));
+        let alike = self.alike[i + self.blocks[0] * (j + self.blocks[1] * k)];
+        let reach = i64::from(alike % ACTIVE);
         let cells = |block: i64| block << self.log2_cells;
         let block = [i as i64, j as i64, k as i64];
         let samples = position.steps_within(pace, block.map(|b| cells(b + 1 - reach)), block.map(|b| cells(b + reach)));
-        Leap { active: distance == 0, samples }
+        Leap { active: alike > ACTIVE, samples }
     }
 
     /// Whether something may show in the block that holds the cell with this lower corner.
     #[inline(always)]
     pub(super) fn is_active(&self, corner: [i32; 3]) -> bool {
         let [i, j, k] = corner.map(|x| x as usize >> self.log2_cells);
-        self.distance[i + self.blocks[0] * (j + self.blocks[1] * k)] == 0
+        self.alike[i + self.blocks[0] * (j + self.blocks[1] * k)] > ACTIVE
     }
 
     /// The blocks of cells with these lower corners: base-2 logarithm of the cells per axis of a block; how many blocks to
@@ -106,10 +108,22 @@ impl EmptySpace {
             #[inline(always)]
             |x| x.shifted_right(self.log2_cells),
         );
-        let distance = L::Ints::bytes(&self.distance, block[0] + block[1] * row + block[2] * slab);
-        let one = L::Ints::splat(1);
-        (self.log2_cells, distance.max(one), distance.lt(one))
+        let alike = L::Ints::bytes(&self.alike, block[0] + block[1] * row + block[2] * slab);
+        let active = i32::from(ACTIVE);
+        (self.log2_cells, alike.and(L::Ints::splat(active - 1)), L::Ints::splat(active).lt(alike))
     }
+}
+
+/// Chessboard distances from blocks to the nearest that is active, or that is not; 255 if there is none.
+fn distances(blocks: [usize; 3], active: &[bool], to: bool) -> Vec<u8> {
+    let mut distance: Vec<u8> = active.iter().map(|&a| if a == to { 0 } else { u8::MAX }).collect();
+    // In two passes over the neighbours already seen (Rosenfeld and Pfaltz 1966).
+    let mut rows = Rows::new(blocks, &mut distance);
+    let [_, ny, nz] = blocks.map(|n| n as isize);
+    let in_order = |row: isize| [row % ny, row / ny];
+    (0..ny * nz).map(in_order).for_each(|[j, k]| rows.lower(j, k, 1));
+    (0..ny * nz).rev().map(in_order).for_each(|[j, k]| rows.lower(j, k, -1));
+    distance
 }
 
 /// A range that also holds what rounding makes of interpolated values.
@@ -183,13 +197,19 @@ mod tests {
         for [i, j, k] in lit {
             active[i + 9 * (j + 7 * k)] = true;
         }
-        let space = EmptySpace::from_active(blocks, 3, &active);
+        let inverse: Vec<bool> = active.iter().map(|a| !a).collect();
+        let [space, other] = [&active, &inverse].map(|active| EmptySpace::from_active(blocks, 3, active));
         for b in 0..active.len() {
             let at = [b % 9, b / 9 % 7, b / 63];
             let to = |l: [usize; 3]| (0..3).map(|a| at[a].abs_diff(l[a])).max().unwrap();
             let expected = lit.into_iter().map(to).min().unwrap();
-            assert_eq!(usize::from(space.distance[b]), expected, "block {at:?}");
+            let [same, inverse] = [&space, &other].map(|space| (space.alike[b] > ACTIVE, space.alike[b] % ACTIVE));
+            // Alone among others, a block is like itself.
+            assert_eq!(same, (expected == 0, expected.max(1) as u8), "block {at:?}");
+            assert_eq!(inverse, (expected != 0, expected.max(1) as u8), "block {at:?}, the other way round");
         }
+        let all = EmptySpace::from_active(blocks, 3, &vec![true; active.len()]);
+        assert!(all.alike[..active.len()].iter().all(|&alike| alike == u8::MAX), "active as far as can be told");
     }
 
     #[test]

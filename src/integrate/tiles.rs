@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use super::Frame;
 use crate::image::Image;
-use crate::scene::{Background, Ray};
+use crate::scene::{Background, Camera, Rays};
+use crate::simd::{self, Lanes};
 
 /// Pixels per side of a tile: neighbouring rays read the same voxels.
 const TILE: usize = 16;
@@ -60,6 +61,12 @@ struct Tile<'p> {
     rows: Vec<&'p mut [[f32; 4]]>,
 }
 
+impl Tile<'_> {
+    fn pixels(&self) -> Pixels {
+        Pixels { column: self.column, row: self.row, width: self.rows[0].len(), height: self.rows.len() }
+    }
+}
+
 /// The pixels of a tile, numbered row by row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pixels {
@@ -73,6 +80,13 @@ pub(super) struct Pixels {
 const NEIGHBOURS: usize = 4;
 
 impl Pixels {
+    /// All pixels in the order of their numbers: `[column, row]` of the picture.
+    #[inline(always)]
+    fn row_by_row(self) -> impl Iterator<Item = [usize; 2]> {
+        let Pixels { column, row, width, height } = self;
+        (row..row + height).flat_map(move |y| (column..column + width).map(move |x| [x, y]))
+    }
+
     /// All pixels, neighbours together: their numbers, and `[column, row]` of the picture.
     pub(super) fn neighbours_first(self) -> impl Iterator<Item = (usize, [usize; 2])> {
         let Pixels { column, row, width, height } = self;
@@ -86,20 +100,35 @@ impl Pixels {
     }
 }
 
-/// Traces rays `0..count`, given by the first function; the second takes the light of each that meets the volume.
-pub(super) type TraceAll<'t> = &'t (dyn Fn(usize, &dyn Fn(usize) -> Ray, &mut dyn FnMut(usize, Radiance)) + Sync);
+/// Traces rays; the function takes the number of each that meets the volume, and its light.
+pub(super) type TraceAll<'t> = &'t (dyn Fn(&Rays, &mut dyn FnMut(usize, Radiance)) + Sync);
+
+/// Rays of a tile.
+struct Aim<'t> {
+    camera: &'t Camera,
+    pixels: Pixels,
+    rays: &'t mut Rays,
+}
+
+impl simd::Kernel for Aim<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.rays.through(self.camera, self.pixels.row_by_row());
+    }
+}
 
 /// Renders all pixels, the rays of a tile at once.
 pub(super) fn render_whole(frame: &Frame<'_>, trace: TraceAll<'_>) -> (Image, Tally) {
     let (camera, background) = (&frame.scene.camera, frame.scene.background);
-    let nothing = || ();
-    render_tiles(frame, nothing, |(), tile, tally| {
-        let (column, row, across) = (tile.column, tile.row, tile.rows[0].len());
+    render_tiles(frame, Rays::default, |rays, tile, tally| {
+        let pixels = tile.pixels();
         tile.rows.iter_mut().for_each(|pixels| pixels.fill(over(None, background)));
-        let ray = |n: usize| camera.pixel_ray(column + n % across, row + n / across);
-        trace(across * tile.rows.len(), &ray, &mut |n, light| {
+        frame.schedule.level.run(Aim { camera, pixels, rays });
+        trace(rays, &mut |n, light| {
             tally.count(&light);
-            tile.rows[n / across][n % across] = over(Some(light), background);
+            tile.rows[n / pixels.width][n % pixels.width] = over(Some(light), background);
         });
     })
 }
@@ -113,11 +142,11 @@ pub(super) fn render_together<W>(
 ) -> (Image, Tally) {
     let background = frame.scene.background;
     render_tiles(frame, scratch, |scratch, tile, tally| {
-        let [column, row, width, height] = [tile.column, tile.row, tile.rows[0].len(), tile.rows.len()];
+        let pixels = tile.pixels();
         tile.rows.iter_mut().for_each(|pixels| pixels.fill(over(None, background)));
-        trace(scratch, Pixels { column, row, width, height }, &mut |n, light| {
+        trace(scratch, pixels, &mut |n, light| {
             tally.count(&light);
-            tile.rows[n / width][n % width] = over(Some(light), background);
+            tile.rows[n / pixels.width][n % pixels.width] = over(Some(light), background);
         });
     })
 }

@@ -117,6 +117,11 @@ impl Camera {
         self.projection
     }
 
+    /// Tangent of half the field of view; 0 of parallel rays.
+    pub(super) fn slope(&self) -> f64 {
+        self.slope
+    }
+
     /// The ray through a point of the picture: `x` in `[0, width]` to the right, `y` in `[0, height]` downwards; a pixel's
     /// centre has fractions of one half.
     #[inline(always)]

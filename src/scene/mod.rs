@@ -10,6 +10,7 @@ mod camera;
 mod effects;
 mod lighting;
 mod model;
+mod rays;
 mod shading;
 
 pub use camera::{Camera, Projection, Ray};
@@ -17,6 +18,7 @@ pub use effects::{
     Class, ClassifyAt, Clip, DepthCue, Effects, Fog, FogLaw, HalfSpace, Haze, Mask, Scattering, Shadows,
 };
 pub use model::{Model, Surface, ValueModel, ValueOf};
+pub use rays::Rays;
 pub use shading::{Light, Shading};
 
 use crate::transfer::TransferFunction;

@@ -80,7 +80,9 @@ fn many_rays_at_once_are_each_as_if_alone() {
             let [width, height] = scene.camera.size();
             let ray = |pixel: usize| scene.camera.pixel_ray(pixel % width, pixel / width);
             let mut together = vec![None; width * height];
-            tracer.trace_all(width * height, &ray, &mut |pixel, traced| together[pixel] = Some(traced));
+            tracer.trace_all(&(0..width * height).map(ray).collect(), &mut |pixel, traced| {
+                together[pixel] = Some(traced)
+            });
             assert!(together.iter().any(Option::is_some), "scene {n}: no ray meets the volume");
             for (pixel, together) in together.iter().enumerate() {
                 let light =

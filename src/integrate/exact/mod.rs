@@ -33,7 +33,7 @@ use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
 use crate::plan::{Bound, Exact};
-use crate::scene::{ClassifyAt, Model, Ray, Scene, Shading};
+use crate::scene::{ClassifyAt, Model, Ray, Rays, Scene, Shading};
 use crate::simd::{Level, Pairs};
 use crate::volume::{Samples, Volume};
 
@@ -88,8 +88,8 @@ pub(super) fn frame_tracer<'a>(
 
 /// Renders with a tracer.
 pub(super) fn render(frame: &super::Frame<'_>, tracer: &dyn Tracer) -> Rendered {
-    let (image, tally) = tiles::render_whole(frame, &|count, ray, put| {
-        tracer.trace_all(count, ray, &mut |n, traced| {
+    let (image, tally) = tiles::render_whole(frame, &|rays, put| {
+        tracer.trace_all(rays, &mut |n, traced| {
             let Traced { radiance, transmittance, pieces, bound, .. } = traced;
             put(n, Radiance { color: radiance, transmittance, samples: pieces, error_bound: bound });
         });
@@ -119,11 +119,11 @@ pub enum Precision {
 pub trait Tracer: Sync {
     /// The light of a ray, with its bound; `None` if it misses the volume.
     fn trace(&self, ray: &Ray) -> Option<Traced>;
-    /// The light of rays `0..count`, each as if it were traced alone: `ended` takes it, in any order, of those that meet the
-    /// volume.
-    fn trace_all(&self, count: usize, ray: &dyn Fn(usize) -> Ray, ended: &mut dyn FnMut(usize, Traced)) {
-        for n in 0..count {
-            if let Some(traced) = self.trace(&ray(n)) {
+    /// The light of many rays, each as if it were traced alone: `ended` takes it, in any order and by the number of the ray, of
+    /// those that meet the volume.
+    fn trace_all(&self, rays: &Rays, ended: &mut dyn FnMut(usize, Traced)) {
+        for n in 0..rays.len() {
+            if let Some(traced) = self.trace(&rays.get(n)) {
                 ended(n, traced);
             }
         }

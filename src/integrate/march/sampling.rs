@@ -49,13 +49,25 @@ impl<'a> Sampling<'a> {
     #[inline(always)]
     pub(super) fn along(&self, ray: Ray, pixel: [usize; 2]) -> Option<(Chord, [Stretch; 4])> {
         let (grid, scene) = (self.frame.volume.grid(), self.frame.scene);
+        self.along_chord(ray, pixel, || Chord::new(grid, &scene.effects.clip, ray))
+    }
+
+    /// The same of a ray whose chord is known.
+    #[inline(always)]
+    pub(super) fn along_chord(
+        &self,
+        ray: Ray,
+        pixel: [usize; 2],
+        chord: impl FnOnce() -> Option<Chord>,
+    ) -> Option<(Chord, [Stretch; 4])> {
+        let (grid, scene) = (self.frame.volume.grid(), self.frame.scene);
         let cuts = |chord: &Chord| Cuts::new(self.settings, chord, ray, scene.camera.forward(), self.anchor_mm, pixel);
         if let Some(clipped) = &self.clipped {
             let chord = clipped.chord(grid, ray)?;
             let samples = clipped.left(&chord, ray, cuts(&chord).whole_steps())?;
             return Some((chord, samples.in_order(self.order)));
         }
-        let chord = Chord::new(grid, &scene.effects.clip, ray)?;
+        let chord = chord()?;
         Some((chord, cuts(&chord).stretches(self.rule, self.order)))
     }
 }

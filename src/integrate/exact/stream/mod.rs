@@ -33,9 +33,9 @@ use super::medium::Medium;
 use super::ray::{Frame, Front, Traced};
 use super::shade::{Lit, Unlit};
 use super::splits::Splits;
-use crate::field::{Chord, Voxel};
+use crate::field::{Chords, Voxel};
 use crate::integrate::occupancy::Occupancy;
-use crate::scene::{Clip, Ray};
+use crate::scene::{Clip, Ray, Rays};
 use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
 use front::Fronts;
@@ -77,15 +77,15 @@ where
 {
     fn trace(&self, ray: &Ray) -> Option<Traced> {
         let mut found = None;
-        self.trace_all(1, &|_| *ray, &mut |_, traced| found = Some(traced));
+        self.trace_all(&[*ray].into_iter().collect(), &mut |_, traced| found = Some(traced));
         found
     }
 
-    fn trace_all(&self, count: usize, ray: &dyn Fn(usize) -> Ray, ended: &mut dyn FnMut(usize, Traced)) {
+    fn trace_all(&self, rays: &Rays, ended: &mut dyn FnMut(usize, Traced)) {
         thread_local! {
-            static SPLITS: RefCell<Splits<f64>> = RefCell::default();
+            static KEPT: RefCell<(Chords, Splits<f64>)> = RefCell::default();
         }
-        SPLITS.with_borrow_mut(|splits| self.level.run(Rounds { stream: self, count, ray, ended, splits }));
+        KEPT.with_borrow_mut(|(chords, splits)| self.level.run(Rounds { stream: self, rays, chords, ended, splits }));
     }
 
     fn kernel(&self) -> &str {
@@ -96,8 +96,8 @@ where
 /// Rays to trace, and where their light goes.
 struct Rounds<'r, 'a, V, T, D, const F: usize> {
     stream: &'r Stream<'a, V, T, D, F>,
-    count: usize,
-    ray: &'r dyn Fn(usize) -> Ray,
+    rays: &'r Rays,
+    chords: &'r mut Chords,
     ended: &'r mut dyn FnMut(usize, Traced),
     splits: &'r mut Splits<f64>,
 }
@@ -113,7 +113,9 @@ where
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Rounds { stream, count, ray: ray_of, ended, splits } = self;
+        let Rounds { stream, rays, chords, ended, splits } = self;
+        chords.of(stream.grid, stream.clip, rays);
+        let (low, high) = stream.grid.index_bounds();
         let mut walks = Walks::new(stream.voxels.dims());
         let mut passed = Passed::new();
         let (mut whole, mut cut) = (Shown::<F>::new(), Shown::<F>::new());
@@ -121,7 +123,7 @@ where
         let mut fronts = Fronts::new(stream.frame.tolerance, stream.frame.brightest);
         // Who sits where, and looks where.
         let mut seated: [Option<(usize, DVec3)>; RAYS] = [None; RAYS];
-        let mut waiting = 0..count;
+        let mut waiting = 0..rays.len();
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
         let [by_absorption, per_ray] = Budget::of_pieces(stream.frame.tolerance);
@@ -138,10 +140,11 @@ where
                 }
                 while ray.is_none() {
                     let Some(number) = waiting.next() else { break };
-                    let next = ray_of(number);
-                    if let Some(chord) = stream.chord(&next) {
+                    if let Some(mut chord) = chords.get(number) {
+                        chord.entry_index = chord.entry_index.clamp(low, high);
                         walks.enter(seat, &chord);
                         fronts.enter(seat);
+                        let next = rays.get(number);
                         if let Some(lighting) = &stream.lighting {
                             seen.enter(seat, &next, &lighting.shading);
                         }
@@ -213,14 +216,6 @@ impl<V, T, D, const F: usize> Stream<'_, V, T, D, F>
 where
     D: Medium<f64>,
 {
-    /// The part of a ray inside the volume; `None` if there is none.
-    fn chord(&self, ray: &Ray) -> Option<Chord> {
-        let mut chord = Chord::new(self.grid, self.clip, *ray)?;
-        let (low, high) = self.grid.index_bounds();
-        chord.entry_index = chord.entry_index.clamp(low, high);
-        Some(chord)
-    }
-
     /// Integrates a cell with its twin.
     #[inline(never)]
     fn again(

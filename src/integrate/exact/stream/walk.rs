@@ -124,7 +124,7 @@ impl Walks {
             } else {
                 self.per_mm[a][seat] = d.abs();
                 self.mm_per[a][seat] = 1.0 / d.abs();
-                self.face_zero_mm[a][seat] = -p / d.abs();
+                self.face_zero_mm[a][seat] = -p * self.mm_per[a][seat];
                 self.entry[a][seat] = p + NUDGE;
                 self.leaves_at[a][seat] = if falls { 0.0 } else { 1.0 };
                 self.less_per_mm[a][seat] = d;

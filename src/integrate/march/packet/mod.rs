@@ -19,14 +19,14 @@ mod walk;
 
 use super::sampling::Sampling;
 use crate::classify::LaneClassifier;
-use crate::field::{GradientUnits, Trilinear, Voxel};
+use crate::field::{Chords, GradientUnits, Trilinear, Voxel};
 use crate::image::Image;
 use crate::integrate::Frame;
 use crate::integrate::empty_space::EmptySpace;
 use crate::integrate::shade::LaneShader;
 use crate::integrate::tiles::{self, Pixels, Radiance, Tally};
 use crate::plan::March;
-use crate::scene::Camera;
+use crate::scene::Rays;
 use crate::simd::{self, BATCH, Ints, Lanes, Level, Mask, Pairs};
 use crate::volume::Grid;
 use light::{Light, interval};
@@ -57,6 +57,8 @@ pub(in super::super) fn suits(settings: &March, grid: &Grid) -> bool {
 
 /// What is kept between tiles.
 struct Scratch {
+    rays: Rays,
+    chords: Chords,
     pieces: Pieces,
     /// Of each piece.
     lights: Vec<Radiance>,
@@ -69,6 +71,8 @@ struct Scratch {
 impl Scratch {
     fn new(lights: usize) -> Box<Self> {
         Box::new(Scratch {
+            rays: Rays::default(),
+            chords: Chords::default(),
             pieces: Pieces::new(),
             lights: Vec::new(),
             met: Vec::new(),
@@ -81,12 +85,11 @@ impl Scratch {
 impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Packets<'_, V, C, S> {
     /// Renders every pixel of a frame.
     pub(in super::super) fn render(&self, frame: &Frame<'_>, settings: &March) -> (Image, Tally) {
-        let camera = &frame.scene.camera;
         let sampling = Sampling::new(frame, settings);
         let stop_below = settings.termination_transmittance.max(f64::from(f32::MIN_POSITIVE));
         let nothing_kept = || Scratch::new(self.shader.lights());
         tiles::render_together(frame, nothing_kept, |scratch, pixels, ended| {
-            let tile = Tile { kernel: self, sampling: &sampling, camera, pixels, stop_below: stop_below as f32 };
+            let tile = Tile { kernel: self, sampling: &sampling, frame, pixels, stop_below: stop_below as f32 };
             self.level.run(Flight { tile, scratch: &mut *scratch });
             let Scratch { lights, met, .. } = &**scratch;
             for (k, &(n, first)) in met.iter().enumerate() {
@@ -117,7 +120,7 @@ fn composited(pieces: &[Radiance], stop_below: f64) -> Radiance {
 struct Tile<'t, 'a, V, C, S> {
     kernel: &'t Packets<'a, V, C, S>,
     sampling: &'t Sampling<'a>,
-    camera: &'t Camera,
+    frame: &'t Frame<'t>,
     pixels: Pixels,
     stop_below: f32,
 }
@@ -126,13 +129,16 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Tile<'_, '_, V, C, S> {
     /// Cuts all rays into pieces.
     #[inline(always)]
     fn cut(&self, scratch: &mut Scratch) {
-        let Scratch { pieces, lights, met, halves, .. } = scratch;
+        let Scratch { rays, chords, pieces, lights, met, halves, .. } = scratch;
+        rays.through(&self.frame.scene.camera, self.pixels.neighbours_first().map(|(_, pixel)| pixel));
+        let grid = self.frame.volume.grid();
+        chords.of(grid, &self.frame.scene.effects.clip, rays);
         pieces.count = 0;
         met.clear();
         halves.clear();
-        for (n, [column, row]) in self.pixels.neighbours_first() {
-            let ray = self.camera.pixel_ray(column, row);
-            let Some((chord, stretches)) = self.sampling.along(ray, [column, row]) else { continue };
+        for (k, (n, pixel)) in self.pixels.neighbours_first().enumerate() {
+            let ray = rays.get(k);
+            let Some((chord, stretches)) = self.sampling.along_chord(ray, pixel, || chords.get(k)) else { continue };
             met.push((n, pieces.count));
             for stretch in stretches.iter().filter(|stretch| stretch.samples > 0) {
                 pieces.add(&chord, stretch, self.kernel.field.dims());
