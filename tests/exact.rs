@@ -1,5 +1,6 @@
 //! The exact integrator against the oracle: every pixel within the tolerance, and within the bound it reports.
 
+mod kernels;
 mod levels;
 
 use crate::support::scenes::{rough_volume, scene_around, thin_shell, two_colors, two_lights};

@@ -21,7 +21,7 @@ use std::fmt;
 
 use crate::error::{Error, Fault, Result};
 use crate::image::Image;
-use crate::plan::{Method, SampleRule};
+use crate::plan::{Bound, Method, SampleRule};
 use crate::scene::{ClassifyAt, Model, Scene};
 use crate::simd::Level;
 use crate::volume::Volume;
@@ -42,6 +42,8 @@ pub struct Statistics {
     pub samples: u64,
     /// Largest bound on the error of a channel of a pixel (linear, premultiplied), where the method has one.
     pub error_bound: Option<f64>,
+    /// What is known of that bound, by the kernel that ran.
+    pub bound: Option<Bound>,
     /// Rays that met the volume, or haze.
     pub rays: u64,
     /// The kernel, such as `march/i16/tf2d/lit/avx2`.

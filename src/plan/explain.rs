@@ -197,6 +197,7 @@ pub fn plan_json(plan: &Plan) -> Value {
             "size": camera.size()
         },
         "method": plan.method,
+        "bound": plan.bound(),
         "chosen_because": plan.chosen.as_ref().map(|chosen| chosen.because.as_str()),
         "certify": plan.certify,
         "output": { "path": plan.output.path, "format": plan.output.format },

@@ -32,7 +32,7 @@ use crate::classify::{Baked, BakedAlike, Classifier, OneD, TwoD, bake, bake_alik
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
-use crate::plan::{Bound, Exact};
+use crate::plan::{Bound, Exact, ExactKernel};
 use crate::scene::{ClassifyAt, Model, Ray, Scene, Shading};
 use crate::simd::{Level, Pairs};
 use crate::volume::{Samples, Volume};
@@ -83,6 +83,7 @@ pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rende
     let statistics = Statistics {
         samples: tally.samples,
         error_bound: Some(tally.error_bound),
+        bound: Some(tracer.bound()),
         rays: tally.rays,
         kernel: tracer.kernel().to_string(),
     };
@@ -113,6 +114,11 @@ pub trait Tracer: Sync {
                 ended(n, traced);
             }
         }
+    }
+
+    /// What is known of the bounds of its rays, but for rounding, which is estimated by all.
+    fn bound(&self) -> Bound {
+        Bound::Proven
     }
 
     /// What runs, such as `exact/i16/tf2d/lit/f32`.
@@ -181,7 +187,7 @@ fn for_samples<'a, V: Voxel + Pairs>(
         Model::Light | Model::Value(_) => {}
     }
     let tf = &scene.transfer_function;
-    let of = Of { volume, scene, tolerance, voxel: V::NAME, level, precision };
+    let of = Of { volume, scene, tolerance, voxel: V::NAME, level };
     if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
         let nearest = Nearest::new(classes, volume.grid());
         // In f64 alone, which keeps the number of kernels small.
@@ -196,23 +202,29 @@ fn for_samples<'a, V: Voxel + Pairs>(
             }
         };
     }
-    let double = bake::<f64>(tf, rescale);
-    // Across an interval this narrow, the rounding of a value in f32 would cost more than rounding may.
-    let too_narrow = double.narrowest() < SHARE_OF_ROUNDING * f64::from(f32::EPSILON) / tolerance;
-    let single = precision != Precision::Double && !too_narrow;
-    if single && let Some(voxels) = of.voxels(samples) {
-        return match (double, bake::<f32>(tf, rescale)) {
+    let kernel = match precision {
+        Precision::Estimated => ExactKernel::of(scene, volume, &Exact { tolerance, bound: Bound::Estimated }),
+        Precision::Single => ExactKernel::of(scene, volume, &Exact { tolerance, bound: Bound::Proven }),
+        Precision::Double => ExactKernel::Double,
+    };
+    let baked = (bake::<f64>(tf, rescale), bake::<f32>(tf, rescale));
+    if let ExactKernel::InRegisters(bound) = kernel
+        && let Some(voxels) = Voxels::new(volume, samples)
+    {
+        return match baked {
             (Baked::OneD(double), Baked::OneD(other)) => {
-                of.stream("tf1d", voxels, OfValue::new(&other), &other, Classified { lattice, classifier: double })
+                let double = Classified { lattice, classifier: double };
+                of.stream("tf1d", bound, voxels, OfValue::new(&other), &other, double)
             }
             (Baked::TwoD(double), Baked::TwoD(other)) => {
-                let function = OfValueAndMagnitude::new(&other);
-                of.stream("tf2d", voxels, function, &other, Classified { lattice, classifier: double })
+                let double = Classified { lattice, classifier: double };
+                of.stream("tf2d", bound, voxels, OfValueAndMagnitude::new(&other), &other, double)
             }
             _ => unreachable!("both precisions bake the same transfer function"),
         };
     }
-    match (double, bake::<f32>(tf, rescale)) {
+    let single = kernel != ExactKernel::Double;
+    match baked {
         (Baked::OneD(double), Baked::OneD(other)) => {
             let other = single.then_some(Classified { lattice, classifier: other });
             of.tracer("tf1d", Classified { lattice, classifier: double }, other)
@@ -232,27 +244,14 @@ struct Of<'a> {
     tolerance: f64,
     voxel: &'static str,
     level: Level,
-    precision: Precision,
 }
 
 impl<'a> Of<'a> {
-    /// The voxels as the fast kernel reads them, where it renders the scene.
-    fn voxels<V: Voxel + Pairs>(&self, samples: &'a [V]) -> Option<Voxels<'a, V>> {
-        let Of { volume, scene, .. } = *self;
-        let plain = scene.model == Model::Light && !scene.effects.change_light();
-        let can_be_lit = scene.shading.is_none() || self.lighting().is_some();
-        (plain && can_be_lit).then(|| Voxels::new(volume, samples)).flatten()
-    }
-
-    /// The shading as the fast kernel has it; `None` for none, and for one that it does not have.
-    fn lighting(&self) -> Option<Lighting> {
-        Lighting::new(self.scene.shading.as_ref()?, Brightest::of(self.scene).color)
-    }
-
     /// The fast kernel.
     fn stream<V, T, C, D, const F: usize>(
         self,
         name: &str,
+        bound: Bound,
         voxels: Voxels<'a, V>,
         function: T,
         classifier: &C,
@@ -265,13 +264,12 @@ impl<'a> Of<'a> {
         D: Medium<f64> + 'a,
         Read: Fields<F>,
     {
-        let lighting = self.lighting();
-        let Of { volume, scene, tolerance, voxel, level, precision } = self;
+        let Of { volume, scene, tolerance, voxel, level } = self;
         let everything = [0.0, f32::MAX];
         let occupancy = voxels.occupancy(|range| !classifier.is_empty(range, everything));
         let brightest = Brightest::of(scene);
-        let has_nodes = lighting.is_some() && precision == Precision::Estimated && brightest.color <= MOST_COLOR;
-        let estimate = has_nodes.then(|| Estimate::within(tolerance));
+        let lighting = scene.shading.as_ref().and_then(|shading| Lighting::new(shading, brightest.color));
+        let estimate = (bound == Bound::Estimated).then(|| Estimate::within(tolerance));
         let tolerance = estimate.map_or(tolerance, |estimate| estimate.proven);
         let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest };
         let (grid, clip) = (volume.grid(), &scene.effects.clip);
@@ -310,14 +308,6 @@ impl<'a> Of<'a> {
         Box::new(Kernel { frame, shading, double, single, name })
     }
 }
-
-/// What nodes miss is estimated over what is absorbed. Where something shines brighter than this over what it absorbs, and all the
-/// more where it absorbs nothing, that says little, and the bound is proven.
-const MOST_COLOR: f64 = 16.0;
-
-/// f32 is used where an interval between knots is at least this many roundings wide, over the tolerance. On public scans a
-/// ray's error by rounding was up to a thirtieth of a rounding over that width; this keeps it within the budget's share.
-const SHARE_OF_ROUNDING: f64 = 16.0;
 
 /// A kernel that needs nothing but its ray.
 struct Direct<F> {

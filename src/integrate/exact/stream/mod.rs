@@ -35,6 +35,7 @@ use super::shade::{Lit, Unlit};
 use super::splits::Splits;
 use crate::field::{Chord, Voxel};
 use crate::integrate::occupancy::Occupancy;
+use crate::plan::Bound;
 use crate::scene::{Clip, Ray};
 use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
@@ -86,6 +87,10 @@ where
             static SPLITS: RefCell<Splits<f64>> = RefCell::default();
         }
         SPLITS.with_borrow_mut(|splits| self.level.run(Rounds { stream: self, count, ray, ended, splits }));
+    }
+
+    fn bound(&self) -> Bound {
+        self.estimate.map_or(Bound::Proven, |_| Bound::Estimated)
     }
 
     fn kernel(&self) -> &str {
