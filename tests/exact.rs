@@ -2,6 +2,7 @@
 
 mod kernels;
 mod levels;
+mod schedule;
 
 use crate::support::scenes::{rough_volume, scene_around, thin_shell, two_colors, two_lights};
 use pellucid::integrate::exact::{Precision, tracer};

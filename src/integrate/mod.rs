@@ -1,8 +1,8 @@
 //! The volume rendering integral along each ray of a picture.
 //!
 //! [`render`] is all a caller needs. A kernel is chosen once per frame by type (voxels, transfer function, shading, or the
-//! atmosphere where a scene has effects of light); the choices of a [`Schedule`] change how long a picture takes, never the
-//! picture.
+//! atmosphere where a scene has effects of light); the choices of a [`Schedule`] change how long a picture takes, and the
+//! picture by no more than its bound.
 
 mod atmosphere;
 mod classify_voxels;
@@ -50,20 +50,24 @@ pub struct Statistics {
     pub kernel: String,
 }
 
-/// Choices that change how long a picture takes, never the picture.
+/// Choices that change how long a picture takes. None changes a picture by marching. One by the exact integrator is the same for any
+/// order of tiles and any registers, and within the same bound with whatever is skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Schedule {
     /// Seed of a random order of the tiles; `None` row by row.
     pub shuffled_tiles: Option<u64>,
     /// Leap over blocks of cells in which nothing absorbs or emits.
     pub empty_space_skipping: bool,
+    /// End rays of the exact integrator where all that may follow fits into what is left of the tolerance; the bound says how much that
+    /// was. Where marching ends rays is a setting of its own, since it has no bound to charge.
+    pub early_termination: bool,
     /// The registers that kernels are run with.
     pub level: Level,
 }
 
 impl Default for Schedule {
     fn default() -> Self {
-        Schedule { shuffled_tiles: None, empty_space_skipping: true, level: Level::widest() }
+        Schedule { shuffled_tiles: None, empty_space_skipping: true, early_termination: true, level: Level::widest() }
     }
 }
 

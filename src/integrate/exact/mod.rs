@@ -39,9 +39,10 @@ use crate::volume::{Samples, Volume};
 
 use super::classify_voxels::classify_voxels;
 use super::light_volumes::LightVolumes;
+use super::occupancy::Occupancy;
 use super::texels::{Component, Rgba};
 use super::tiles::{self, Radiance};
-use super::{Rendered, Statistics};
+use super::{Rendered, Schedule, Statistics};
 use cells::Domain;
 use depth::Extinction;
 use lattice::Lattice;
@@ -73,7 +74,7 @@ pub(super) fn render(frame: &super::Frame<'_>, settings: &Exact) -> Result<Rende
         Bound::Estimated => Precision::Estimated,
         Bound::Proven => Precision::Single,
     };
-    let tracer = tracer_at(frame.schedule.level, frame.volume, frame.scene, tolerance, precision);
+    let tracer = scheduled(frame.schedule, frame.volume, frame.scene, tolerance, precision);
     let (image, tally) = tiles::render_whole(frame, &|count, ray, put| {
         tracer.trace_all(count, ray, &mut |n, traced| {
             let Traced { radiance, transmittance, pieces, bound, .. } = traced;
@@ -139,15 +140,26 @@ pub fn tracer_at<'a>(
     tolerance: f64,
     precision: Precision,
 ) -> Box<dyn Tracer + 'a> {
+    scheduled(Schedule { level, ..Schedule::default() }, volume, scene, tolerance, precision)
+}
+
+fn scheduled<'a>(
+    schedule: Schedule,
+    volume: &'a Volume,
+    scene: &'a Scene,
+    tolerance: f64,
+    precision: Precision,
+) -> Box<dyn Tracer + 'a> {
     match volume.samples() {
-        Samples::I16(samples) => for_samples(level, volume, scene, samples, tolerance, precision),
-        Samples::F32(samples) => for_samples(level, volume, scene, samples, tolerance, precision),
-        Samples::Rgba8(texels) => for_colors(volume, scene, texels, tolerance),
-        Samples::Rgba16(texels) => for_colors(volume, scene, texels, tolerance),
+        Samples::I16(samples) => for_samples(schedule, volume, scene, samples, tolerance, precision),
+        Samples::F32(samples) => for_samples(schedule, volume, scene, samples, tolerance, precision),
+        Samples::Rgba8(texels) => for_colors(schedule, volume, scene, texels, tolerance),
+        Samples::Rgba16(texels) => for_colors(schedule, volume, scene, texels, tolerance),
     }
 }
 
 fn for_colors<'a, T: Component>(
+    schedule: Schedule,
     volume: &'a Volume,
     scene: &'a Scene,
     texels: &'a [[T; 4]],
@@ -155,11 +167,11 @@ fn for_colors<'a, T: Component>(
 ) -> Box<dyn Tracer + 'a> {
     let Some(encoding) = volume.rgba_encoding() else { unreachable!("colours are understood in some way") };
     let name = format!("exact/{}/unlit/f64", T::NAME);
-    voxels::tracer(volume, scene, Rgba::new(texels, encoding), tolerance, name)
+    voxels::tracer(schedule, volume, scene, Rgba::new(texels, encoding), tolerance, name)
 }
 
 fn for_samples<'a, V: Voxel + Pairs>(
-    level: Level,
+    schedule: Schedule,
     volume: &'a Volume,
     scene: &'a Scene,
     samples: &'a [V],
@@ -174,7 +186,7 @@ fn for_samples<'a, V: Voxel + Pairs>(
             let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
             let lit = if scene.shading.is_some() { "lit" } else { "unlit" };
             let name = format!("exact/voxels/{classifier}/{lit}/f64");
-            return voxels::tracer(volume, scene, classify_voxels(volume, scene), tolerance, name);
+            return voxels::tracer(schedule, volume, scene, classify_voxels(volume, scene), tolerance, name);
         }
         Model::Value(model) if !model.of.reads_transfer_function() => {
             let trace = move |ray: &Ray| models::show_value(&lattice, &shown, rescale, model, ray);
@@ -187,7 +199,7 @@ fn for_samples<'a, V: Voxel + Pairs>(
         Model::Light | Model::Value(_) => {}
     }
     let tf = &scene.transfer_function;
-    let of = Of { volume, scene, tolerance, voxel: V::NAME, level };
+    let of = Of { volume, scene, tolerance, voxel: V::NAME, schedule };
     if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
         let nearest = Nearest::new(classes, volume.grid());
         // In f64 alone, which keeps the number of kernels small.
@@ -243,7 +255,7 @@ struct Of<'a> {
     scene: &'a Scene,
     tolerance: f64,
     voxel: &'static str,
-    level: Level,
+    schedule: Schedule,
 }
 
 impl<'a> Of<'a> {
@@ -264,14 +276,17 @@ impl<'a> Of<'a> {
         D: Medium<f64> + 'a,
         Read: Fields<F>,
     {
-        let Of { volume, scene, tolerance, voxel, level } = self;
+        let Of { volume, scene, tolerance, voxel, schedule: Schedule { level, empty_space_skipping, .. } } = self;
         let everything = [0.0, f32::MAX];
-        let occupancy = voxels.occupancy(|range| !classifier.is_empty(range, everything));
+        let occupancy = match empty_space_skipping {
+            true => voxels.occupancy(|range| !classifier.is_empty(range, everything)),
+            false => Occupancy::full(volume.grid().dims()),
+        };
         let brightest = Brightest::of(scene);
         let lighting = scene.shading.as_ref().and_then(|shading| Lighting::new(shading, brightest.color));
         let estimate = (bound == Bound::Estimated).then(|| Estimate::within(tolerance));
         let tolerance = estimate.map_or(tolerance, |estimate| estimate.proven);
-        let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest };
+        let frame = self.frame(tolerance, brightest);
         let (grid, clip) = (volume.grid(), &scene.effects.clip);
         let lit = match (&lighting, estimate) {
             (None, _) => "unlit",
@@ -280,6 +295,12 @@ impl<'a> Of<'a> {
         };
         let name = format!("exact/{voxel}/{name}/{lit}/{level}");
         Box::new(Stream { level, frame, grid, clip, voxels, occupancy, function, lighting, estimate, double, name })
+    }
+
+    /// What all rays share.
+    fn frame(&self, tolerance: f64, brightest: Brightest) -> Frame<'a> {
+        let domain = Domain::new(self.volume, self.scene);
+        Frame { domain, tolerance, brightest, ends_early: self.schedule.early_termination }
     }
 
     /// The kernel for a medium: by its effects of light, its shading, or the optical depth alone. `single` is the same medium
@@ -291,13 +312,13 @@ impl<'a> Of<'a> {
         single: Option<S>,
     ) -> Box<dyn Tracer + 'a> {
         let Of { volume, scene, tolerance, voxel, .. } = self;
-        let domain = Domain::new(volume, scene);
         let name = |what: &str, real: &str| format!("exact/{voxel}/{classifier}/{what}/{real}");
         if let Model::Value(model) = &scene.model {
+            let domain = Domain::new(volume, scene);
             let trace = move |ray: &Ray| models::show_depth(&double, &domain, model, ray);
             return Box::new(Direct { trace, name: name(model.of.name(), "f64") });
         }
-        let frame = Frame { domain, tolerance, brightest: Brightest::of(scene) };
+        let frame = self.frame(tolerance, Brightest::of(scene));
         if scene.effects.change_light() {
             let lights = LightVolumes::new(volume, scene);
             let name = name("atmosphere", "f64");

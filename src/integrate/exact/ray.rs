@@ -39,6 +39,8 @@ pub(super) struct Frame<'a> {
     pub(super) domain: Domain<'a>,
     pub(super) tolerance: f64,
     pub(super) brightest: Brightest,
+    /// Whether a ray ends as soon as its budget allows for all that may follow.
+    pub(super) ends_early: bool,
 }
 
 /// Bounds on the light that the rest of a ray may bring.
@@ -145,7 +147,7 @@ impl Frame<'_> {
                 &mut light,
             );
             let rest = self.brightest.of_rest(light.transmittance, end_mm - segment.exit_mm);
-            if light.budget.may_end(rest) {
+            if self.ends_early && light.budget.may_end(rest) {
                 return Some(light.ended(rest));
             }
         }

@@ -52,6 +52,9 @@ pub(super) use look::{Fields, Read};
 pub(super) use shaded::{DEVIATIONS, Estimate};
 pub(super) use voxels::Voxels;
 
+/// What is allowed behind less light than this is as if so much were left, so that f32 holds it: of rays that do not end early.
+const FAINTEST: f64 = 1e-12;
+
 /// The fast kernel for one transfer function of `F` fields.
 pub(super) struct Stream<'a, V, T, D, const F: usize> {
     pub(super) level: Level,
@@ -123,7 +126,7 @@ where
         let mut passed = Passed::new();
         let (mut whole, mut cut) = (Shown::<F>::new(), Shown::<F>::new());
         let mut results = Results::new();
-        let mut fronts = Fronts::new(stream.frame.tolerance, stream.frame.brightest);
+        let mut fronts = Fronts::new(&stream.frame);
         // Who sits where, and looks where.
         let mut seated: [Option<(usize, DVec3)>; RAYS] = [None; RAYS];
         let mut waiting = 0..count;
@@ -181,12 +184,13 @@ where
                 for (seat, _) in seated.iter().enumerate().filter(|(_, ray)| ray.is_some()) {
                     // What is behind counts the less the less light gets there.
                     let light = fronts.get(seat);
-                    let counts = light.transmittance / walks.per_length_mm(seat);
+                    let transmittance = light.transmittance.max(FAINTEST);
+                    let counts = transmittance / walks.per_length_mm(seat);
                     allowance.per_mm[seat] = (per_ray / counts) as f32;
-                    let left = light.left(walks.done(seat)) / light.transmittance;
+                    let left = light.left(walks.done(seat)) / transmittance;
                     allowance.per_cell[seat] = (left.max(0.0) / STEPS as f64) as f32;
                     if let Some(estimate) = &stream.estimate {
-                        allowance.estimate(seat, estimate, light.transmittance);
+                        allowance.estimate(seat, estimate, transmittance);
                     }
                 }
                 let (passed, voxels, seen, allowance) = (&passed, &stream.voxels, &seen, &allowance);
