@@ -1,6 +1,8 @@
 //! The exact integrator against the oracle: every pixel within the tolerance, and within the bound it reports.
 
+mod kernels;
 mod levels;
+mod schedule;
 
 use crate::support::scenes::{rough_volume, scene_around, thin_shell, two_colors, two_lights};
 use pellucid::integrate::exact::{Precision, tracer};

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use pellucid::plan::{Plan, Storage, VolumeInfo};
 use pellucid::spec::Spec;
-use pellucid::volume::{Grid, Quantity};
+use pellucid::volume::{Grid, Quantity, Rescale};
 
 mod camera;
 mod clip;
@@ -34,6 +34,7 @@ fn volume() -> VolumeInfo {
         uneven_slices_mm: None,
         grid: Grid::axis_aligned([64, 48, 33], DVec3::new(1.0, 2.0, 3.0)).unwrap(),
         storage: Storage::I16,
+        rescale: Rescale::IDENTITY,
         value_range: [-1000.0, 1800.0],
         quantity: Quantity::Hu,
         reading_bytes: 2 * 64 * 48 * 33,

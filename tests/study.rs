@@ -63,6 +63,26 @@ fn choices_that_change_no_picture_change_no_error() {
 }
 
 #[test]
+fn what_the_exact_integrator_passes_over_is_measured_as_that_of_the_march_and_stays_within_the_tolerance() {
+    let study = studied(4);
+    let by = |choice: &str| -> Vec<&str> {
+        let measured = study.costs.iter().filter(|cost| cost.choice == choice).map(|cost| (&cost.by, &cost.errors));
+        measured
+            .map(|(by, errors)| {
+                let largest = errors.map(|errors| errors.largest);
+                let within = by != "exact" || largest.iter().all(|&error| error <= study.tolerance);
+                assert!(within, "{choice}, {by}: errors of {largest:?}");
+                by.as_str()
+            })
+            .collect()
+    };
+    let march = "march at 1/2 voxel";
+    assert_eq!(by("empty-space skipping"), [march, "exact"], "left out: {:?}", study.left_out);
+    assert_eq!(by("early termination at 1/255"), [march], "left out: {:?}", study.left_out);
+    assert_eq!(by("early termination within the bound"), ["exact"], "left out: {:?}", study.left_out);
+}
+
+#[test]
 fn without_time_the_coarsest_of_each_family_is_measured_and_the_rest_is_said_to_be_left_out() {
     let study = studied(0);
     for family in Family::ALL {

@@ -42,7 +42,12 @@ fn each_view_is_the_picture_that_it_is_alone() {
         ("march, trapezoid", format!("{TWO_D}\nintegrate: {{ march: {{ rule: trapezoid }} }}")),
         ("as VTK", format!("{ONE_D}\n{LIT}\nintegrate: {{ march: {{ compatibility: vtk }} }}")),
         ("maximum", "effects: { project: { show: maximum, window_hu: [0, 1800] } }\nintegrate: march".to_owned()),
-        ("optical depth", format!("{TWO_D}\neffects: {{ project: {{ show: optical-depth, window_optical_depth: [0, 3] }} }}\nintegrate: march")),
+        (
+            "optical depth",
+            format!(
+                "{TWO_D}\neffects: {{ project: {{ show: optical-depth, window_optical_depth: [0, 3] }} }}\nintegrate: march"
+            ),
+        ),
         ("surfaces", "effects: { surfaces: [{ hu: 400, color: white }] }\nintegrate: march".to_owned()),
         ("at voxels", format!("{ONE_D}\neffects: {{ classify: voxels }}\nintegrate: march")),
         (

@@ -57,14 +57,6 @@ impl<R: Real> Baked<R> {
         }
     }
 
-    /// Width of the narrowest interval between knots, over the largest magnitude of a knot on its axis.
-    pub fn narrowest(&self) -> f64 {
-        match self {
-            Baked::OneD(c) => c.axis().narrowest(),
-            Baked::TwoD(c) => c.values().narrowest().min(c.gradients().narrowest()),
-        }
-    }
-
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         match self {
@@ -99,6 +91,17 @@ pub fn bake_alike<R: Real>(transfer_functions: &[TransferFunction], rescale: Res
     } else {
         BakedAlike::OneD(transfer_functions.iter().map(|f| OneD::bake(f, rescale)).collect())
     }
+}
+
+/// Width of the narrowest interval between knots of a transfer function baked in f64, over the largest magnitude of a knot on
+/// its axis.
+pub fn narrowest(transfer_function: &TransferFunction, rescale: Rescale) -> f64 {
+    let (values, _) = Axis::<f64>::bake(&transfer_function.value_knots(), |value| rescale.stored(value));
+    if !transfer_function.reads_gradient() {
+        return values.narrowest();
+    }
+    let (gradients, _) = Axis::<f64>::bake(&transfer_function.gradient_knots(), |gradient| gradient);
+    values.narrowest().min(gradients.narrowest())
 }
 
 fn rgbs(optics: Optics) -> Rgbs<f64> {

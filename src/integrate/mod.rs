@@ -1,8 +1,8 @@
 //! The volume rendering integral along each ray of a picture.
 //!
-//! [`render`] is all a caller needs, and [`Views`] those who want many pictures of one scene. A kernel is chosen once per frame by type (voxels, transfer function, shading, or the
-//! atmosphere where a scene has effects of light); the choices of a [`Schedule`] change how long a picture takes, never the
-//! picture.
+//! [`render`] is all a caller needs, and [`Views`] those who want many pictures of one scene. A kernel is chosen once per frame
+//! by type (voxels, transfer function, shading, or the atmosphere where a scene has effects of light); the choices of a
+//! [`Schedule`] change how long a picture takes, and the picture by no more than its bound.
 
 mod atmosphere;
 mod classify_voxels;
@@ -23,7 +23,7 @@ use std::fmt;
 
 use crate::error::{Error, Fault, Result};
 use crate::image::Image;
-use crate::plan::Method;
+use crate::plan::{Bound, Method};
 use crate::scene::{ClassifyAt, Model, Scene};
 use crate::simd::Level;
 use crate::volume::Volume;
@@ -47,26 +47,32 @@ pub struct Statistics {
     pub samples: u64,
     /// Largest bound on the error of a channel of a pixel (linear, premultiplied), where the method has one.
     pub error_bound: Option<f64>,
+    /// What is known of that bound, by the kernel that ran.
+    pub bound: Option<Bound>,
     /// Rays that met the volume, or haze.
     pub rays: u64,
     /// The kernel, such as `march/i16/tf2d/lit/avx2`.
     pub kernel: String,
 }
 
-/// Choices that change how long a picture takes, never the picture.
+/// Choices that change how long a picture takes. None changes a picture by marching. One by the exact integrator is the same for any
+/// order of tiles and any registers, and within the same bound with whatever is skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Schedule {
     /// Seed of a random order of the tiles; `None` row by row.
     pub shuffled_tiles: Option<u64>,
     /// Leap over blocks of cells in which nothing absorbs or emits.
     pub empty_space_skipping: bool,
+    /// End rays of the exact integrator where all that may follow fits into what is left of the tolerance; the bound says how much that
+    /// was. Where marching ends rays is a setting of its own, since it has no bound to charge.
+    pub early_termination: bool,
     /// The registers that kernels are run with.
     pub level: Level,
 }
 
 impl Default for Schedule {
     fn default() -> Self {
-        Schedule { shuffled_tiles: None, empty_space_skipping: true, level: Level::widest() }
+        Schedule { shuffled_tiles: None, empty_space_skipping: true, early_termination: true, level: Level::widest() }
     }
 }
 

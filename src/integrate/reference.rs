@@ -13,5 +13,8 @@ pub(super) fn render(frame: &Frame<'_>) -> Rendered {
     let pixels = pixels.into_par_iter().map(|p| p.map(|x| x as f32)).collect();
     let image = Image::from_pixels(width, height, pixels);
     let rays = (width * height) as u64;
-    Rendered { image, statistics: Statistics { samples: 0, error_bound: None, rays, kernel: "reference/f64".into() } }
+    Rendered {
+        image,
+        statistics: Statistics { samples: 0, error_bound: None, bound: None, rays, kernel: "reference/f64".into() },
+    }
 }

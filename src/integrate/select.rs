@@ -76,7 +76,7 @@ fn walked<M: Medium>(
 
 fn rendered(image: Image, tally: Tally, name: String, level: Level) -> Rendered {
     let kernel = format!("{name}/{level}");
-    let statistics = Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel };
+    let statistics = Statistics { samples: tally.samples, error_bound: None, bound: None, rays: tally.rays, kernel };
     Rendered { image, statistics }
 }
 

@@ -77,7 +77,7 @@ impl<'a> Views<'a> {
                 Model::Surfaces(surfaces) => march::show_surfaces(&frame, settings, surfaces),
             },
             Method::Exact(settings) => {
-                let of_scene = || exact::frame_tracer(self.schedule.level, self.volume, self.scene, settings);
+                let of_scene = || exact::frame_tracer(self.schedule, self.volume, self.scene, settings);
                 Ok(exact::render(&frame, self.tracer.get_or_init(of_scene).as_ref()))
             }
             Method::Reference => Ok(reference::render(&frame)),

@@ -230,7 +230,7 @@ impl MethodRecord {
             kernel: statistics.kernel.clone(),
             tolerance: plan.tolerance(),
             error_bound: statistics.error_bound,
-            bound: plan.bound(),
+            bound: statistics.bound,
             samples: statistics.samples,
             rays: statistics.rays,
         }

@@ -201,6 +201,7 @@ pub fn plan_json(plan: &Plan) -> Value {
             "size": camera.size()
         },
         "method": plan.method,
+        "bound": plan.bound(),
         "chosen_because": plan.chosen.as_ref().map(|chosen| chosen.because.as_str()),
         "certify": plan.certify,
         "view": plan.view,

@@ -30,7 +30,7 @@ mod work;
 pub use classification::{Classification, CleanStep, Tissue};
 pub use crop::Crop;
 use effects::{Resolved, Surroundings};
-pub use exact_kernel::{MOST_LIGHTS, shades_in_registers};
+pub use exact_kernel::{ExactKernel, MOST_LIGHTS, Stored, shades_in_registers};
 pub use explain::{explain, explain_json, plan_json};
 pub use integrator::Chosen;
 pub use layers::{Layer, preset_terms};
@@ -63,6 +63,8 @@ pub struct Plan {
     pub method: Method,
     /// Why this method, where the pipeline leaves it to measurements and they were made.
     pub chosen: Option<Chosen>,
+    /// Which of its kernels runs, if the method is exact.
+    pub exact_kernel: Option<ExactKernel>,
     /// The layers whose sum is the scene's transfer function, in the order written; for classification.
     pub layers: Vec<Layer>,
     /// How the volume's colours are understood; `None` for a volume of values.
@@ -154,12 +156,16 @@ impl Plan {
             background: light.background,
             effects: Effects { mask, ..effects },
         };
+        let exact_kernel = match &method {
+            Method::Exact(settings) => Some(ExactKernel::of(&scene, volume, settings)),
+            Method::March(_) | Method::Reference => None,
+        };
         let demand = Demand {
             gradient: scene.shading.as_ref().is_some_and(Shading::is_lit),
             gradient_magnitude: scene.transfer_functions().any(TransferFunction::reads_gradient),
             macrocells: match method {
                 Method::March(_) => model::skips_blocks(&scene.model) && volume.uneven_slices_mm.is_none(),
-                Method::Exact(_) => exact_kernel::is_in_registers(&scene, volume),
+                Method::Exact(_) => matches!(exact_kernel, Some(ExactKernel::InRegisters(_))),
                 Method::Reference => false,
             },
             visibility: !scene.occluded_directions().is_empty(),
@@ -168,6 +174,7 @@ impl Plan {
             scene,
             method,
             chosen,
+            exact_kernel,
             layers,
             colors,
             label_classes,
@@ -198,12 +205,9 @@ impl Plan {
         }
     }
 
-    /// What the bound on the error is, where there is one.
+    /// What the bound on the error will be, where there is one; what it was is in the statistics of the picture.
     pub fn bound(&self) -> Option<Bound> {
-        let Method::Exact(exact) = self.method else { return None };
-        // Nodes are for registers, which macrocells are for too.
-        let has_nodes = self.demand.gradient && self.demand.macrocells;
-        Some(if has_nodes { exact.bound } else { Bound::Proven })
+        self.exact_kernel.map(ExactKernel::bound)
     }
 
     /// How much there is to do, by looking at thousands of rays: for those who ask, as rendering does not.

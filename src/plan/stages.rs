@@ -7,8 +7,8 @@ use crate::volume::Grid;
 
 use super::model::{self, reads_transfer_function};
 use super::{
-    Bound, Colors, Emission, Exact, Jitter, JitterKind, Lattice, March, Method, Order, Plan, Reflection, SampleRule,
-    VolumeInfo,
+    Bound, Colors, Emission, Exact, ExactKernel, Jitter, JitterKind, Lattice, March, Method, Order, Plan, Reflection,
+    SampleRule, VolumeInfo,
 };
 use super::{clip, mask, voxels};
 
@@ -93,7 +93,7 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
     let pixels: u64 = plan.scene.camera.size().iter().map(|&n| n as u64).product();
     stages.push(Stage {
         name: "integrate",
-        what: format!("{}: {}", kernel(&plan.method, &plan.scene, volume), describe_method(plan, volume)),
+        what: format!("{}: {}", kernel(plan, volume), describe_method(plan, volume)),
         bytes: 16 * pixels,
     });
     stages.push(Stage {
@@ -166,8 +166,9 @@ fn classify(plan: &Plan) -> Stage {
 }
 
 /// Name of a kernel by what it is made of, such as `march/i16/tf2d/lit`.
-fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
-    let (method, real) = match method {
+fn kernel(plan: &Plan, volume: &VolumeInfo) -> String {
+    let scene = &plan.scene;
+    let (method, real) = match plan.method {
         Method::Exact(_) => ("exact", "f64"),
         Method::March(_) => ("march", "f32"),
         Method::Reference => return "reference in f64".to_owned(),
@@ -191,6 +192,7 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
     }
     let shader = match &scene.shading {
         _ if scene.effects.change_light() => "atmosphere",
+        Some(_) if plan.exact_kernel == Some(ExactKernel::InRegisters(Bound::Proven)) => "lit-proven",
         Some(_) => "lit",
         None => "unlit",
     };
@@ -200,9 +202,11 @@ fn kernel(method: &Method, scene: &Scene, volume: &VolumeInfo) -> String {
 fn describe_method(plan: &Plan, volume: &VolumeInfo) -> String {
     let shown = model::describe(&plan.scene.model, volume.quantity);
     let march = match (&plan.method, &shown) {
-        (Method::Exact(Exact { tolerance, .. }), None) => {
-            let bound = match plan.bound() {
-                Some(Bound::Estimated) => ", of which what shading misses is estimated",
+        (Method::Exact(Exact { tolerance, bound: asked }), None) => {
+            let bound = match (plan.bound(), asked) {
+                (Some(Bound::Estimated), _) => ", of which what shading misses is estimated",
+                // Where less was enough.
+                (_, Bound::Estimated) if plan.scene.shading.is_some() => ", all of it proven",
                 _ => "",
             };
             return format!("each channel of a pixel within {tolerance:.3e}{bound}");

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::io::Labels;
-use crate::volume::{Grid, Quantity, RgbaEncoding, Samples, Volume};
+use crate::volume::{Grid, Quantity, Rescale, RgbaEncoding, Samples, Volume};
 
 /// What a plan needs to know of a volume: all but its samples.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,8 @@ pub struct VolumeInfo {
     pub uneven_slices_mm: Option<[f64; 2]>,
     /// How samples are stored.
     pub storage: Storage,
+    /// Map from stored samples to values.
+    pub rescale: Rescale,
     /// Smallest and largest value.
     pub value_range: [f64; 2],
     /// What the values measure.
@@ -105,6 +107,7 @@ impl From<&Volume> for VolumeInfo {
             grid: *volume.grid(),
             uneven_slices_mm,
             storage,
+            rescale: volume.rescale(),
             value_range: volume.value_range(),
             quantity: volume.quantity(),
             reading_bytes: storage.bytes() * volume.grid().voxel_count() as u64,

@@ -12,12 +12,13 @@ use super::variants;
 use crate::error::Result;
 use crate::image::Image;
 use crate::integrate::Schedule;
-use crate::plan::{Jitter, JitterKind, March, Method, SampleRule};
-use crate::scene::{ClassifyAt, Scene};
+use crate::plan::{Exact, ExactKernel, Jitter, JitterKind, March, Method, SampleRule};
+use crate::scene::{ClassifyAt, Model, Scene};
 use crate::volume::Volume;
 
-/// How most choices are rendered.
+/// How choices are rendered: each that both can do, by both.
 const MARCH: &str = "march at 1/2 voxel";
+const EXACT: &str = "exact";
 
 /// Most rounds of the two.
 const MOST_ROUNDS: usize = 9;
@@ -98,8 +99,9 @@ fn choices<'a>(
     let march = March::plain(SampleRule::Midpoint, 0.5 * volume.grid().spacing_mm().min_element());
     let side =
         |method: Method| Side { volume, scene: scene.clone(), method, schedule: Schedule::default(), threads: None };
-    let methods = [(MARCH, Method::March(march)), ("exact", variants::exact(tolerance))];
+    let methods = [(MARCH, Method::March(march)), (EXACT, variants::exact(tolerance))];
     let mut choices = of_the_march(march, side);
+    choices.extend(of_the_exact((volume, scene), tolerance, side));
     for (by, method) in methods {
         let mut add = |name, without, with| choices.push(Choice { name, by, sides: [without, with] });
         if let Some([unlit, lit]) = variants::by_shading(volume, scene) {
@@ -139,6 +141,24 @@ fn of_the_march<'a>(march: March, side: impl Fn(Method) -> Side<'a>) -> Vec<Choi
         choice("early termination at 1/255", marching(march), marching(terminated)),
         choice("empty-space skipping", Side { schedule: plodding, ..marching(march) }, marching(march)),
     ]
+}
+
+/// What the exact integrator passes over: its bound holds with and without.
+fn of_the_exact<'a>(
+    (volume, scene): (&Volume, &Scene),
+    tolerance: f64,
+    side: impl Fn(Method) -> Side<'a>,
+) -> Vec<Choice<'a>> {
+    let method = variants::exact(tolerance);
+    let choice =
+        |name, without| Choice { name, by: EXACT, sides: [Side { schedule: without, ..side(method) }, side(method)] };
+    let to_the_end = Schedule { early_termination: false, ..Schedule::default() };
+    let plodding = Schedule { empty_space_skipping: false, ..Schedule::default() };
+    let has_macrocells =
+        matches!(ExactKernel::of(scene, volume, &Exact::within(tolerance)), ExactKernel::InRegisters(_));
+    let ends = (scene.model == Model::Light).then(|| choice("early termination within the bound", to_the_end));
+    let skips = has_macrocells.then(|| choice("empty-space skipping", plodding));
+    ends.into_iter().chain(skips).collect()
 }
 
 /// Renders both sides in turns, the first of a round first in the next one last, and at least once.

@@ -46,6 +46,12 @@ impl Optics {
         Optics { extinction_per_mm, emission_per_mm: color.map(|c| c * extinction_per_mm) }
     }
 
+    /// The brightest channel of q over σ: 0 where nothing is emitted, infinite where something is that does not absorb.
+    pub fn largest_color(&self) -> f64 {
+        let brightest = self.emission_per_mm.into_iter().fold(0.0, f64::max);
+        if brightest > 0.0 { brightest / self.extinction_per_mm } else { 0.0 }
+    }
+
     /// `self + w · other`, component by component.
     #[must_use]
     pub fn plus(self, w: f64, other: Optics) -> Optics {
@@ -141,6 +147,26 @@ impl TransferFunction {
         })
     }
 
+    /// σ and q at the corners of all patches, from each of their sides. Between knots both are bilinear, so bounds that hold here
+    /// hold everywhere.
+    pub fn corners(&self) -> impl Iterator<Item = Optics> {
+        let sides = [
+            (Side::Left, Side::Left),
+            (Side::Left, Side::Right),
+            (Side::Right, Side::Left),
+            (Side::Right, Side::Right),
+        ];
+        let gradients = self.gradient_knots();
+        let places =
+            self.value_knots().into_iter().flat_map(move |v| gradients.clone().into_iter().map(move |g| (v, g)));
+        places.flat_map(move |(v, g)| sides.map(|(v_side, g_side)| self.evaluate_side(v, v_side, g, g_side)))
+    }
+
+    /// The largest [`Optics::largest_color`].
+    pub fn largest_color(&self) -> f64 {
+        self.corners().map(|optics| optics.largest_color()).fold(0.0, f64::max)
+    }
+
     /// Knots along the value axis, ascending, without duplicates; the first and last are the ends of the window.
     pub fn value_knots(&self) -> Vec<f64> {
         let inner = self.terms.iter().flat_map(|t| t.curve.positions());
@@ -189,6 +215,17 @@ mod tests {
         assert_eq!(tf.evaluate(100.0, 20.0).extinction_per_mm, 2.0, "the jump at the end belongs to the outside");
         assert_eq!(tf.evaluate(5000.0, 20.0).extinction_per_mm, 2.0, "beyond the window as at its end");
         assert_eq!(tf.evaluate(-5000.0, 20.0), Optics::NOTHING);
+    }
+
+    #[test]
+    fn the_largest_color_is_that_of_a_corner_and_infinite_where_nothing_absorbs() {
+        assert_eq!(ramp().largest_color(), 1.0, "red below the jump, blue above");
+        let glow = Optics { extinction_per_mm: 0.0, emission_per_mm: [0.0, 0.25, 0.0] };
+        let knots = [(0.0, Optics::NOTHING), (100.0, glow)].map(|(value, optics)| Knot { value, optics });
+        let term = Term { curve: Curve::new(knots.to_vec()).unwrap(), weight: None };
+        let tf = TransferFunction::new([-50.0, 100.0], 20.0, vec![term]).unwrap();
+        assert_eq!(tf.largest_color(), f64::INFINITY);
+        assert_eq!(tf.without_terms().largest_color(), 0.0, "nothing shines");
     }
 
     #[test]

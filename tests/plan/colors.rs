@@ -6,7 +6,7 @@ use glam::DVec3;
 use pellucid::plan::{Plan, Storage, VolumeInfo, explain, explain_json};
 use pellucid::scene::ClassifyAt;
 use pellucid::spec::Spec;
-use pellucid::volume::{ColorEncoding, Grid, Quantity, RgbaEncoding};
+use pellucid::volume::{ColorEncoding, Grid, Quantity, Rescale, RgbaEncoding};
 
 use super::plan;
 
@@ -16,6 +16,7 @@ fn colors() -> VolumeInfo {
     VolumeInfo {
         grid: Grid::axis_aligned([33, 17, 9], DVec3::new(1.0, 0.5, 2.0)).unwrap(),
         storage: Storage::Rgba8(ENCODING),
+        rescale: Rescale::IDENTITY,
         value_range: [0.0, 200.0],
         quantity: Quantity::Arbitrary,
         uneven_slices_mm: None,

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use pellucid::Fault;
 use pellucid::plan::{
-    Colors, Emission, Exact, Format, Jitter, JitterKind, Lattice, March, Method, Order, Plan, Reflection, SampleRule,
+    Bound, Colors, Emission, Exact, ExactKernel, Format, Jitter, JitterKind, Lattice, March, Method, Order, Plan,
+    Reflection, SampleRule, explain, explain_json,
 };
 use pellucid::scene::{Background, Light};
 
@@ -57,6 +58,29 @@ fn settings_and_their_defaults() {
         assert_eq!(plan(&format!("integrate: {{ {written} }}\n")).method, expected, "{written}");
     }
     assert_eq!(plan("integrate: reference\n").method, Method::Reference);
+}
+
+#[test]
+fn what_is_known_of_the_error_is_said_of_the_kernel_that_will_run() {
+    let (lit, narrow) =
+        ("effects: { shading: {} }\n", "{ rectangle: { hu: [300, 300.5] }, extinction_per_mm: 2, color: white }");
+    let narrow = format!("transfer_function: [{{ widgets: [{narrow}] }}]\n{lit}");
+    let asked = format!("integrate: {{ exact: {{ bound: proven }} }}\n{lit}");
+    let (estimated, proven) = (Bound::Estimated, Bound::Proven);
+    for (rest, kernel, name, said) in [
+        ("", ExactKernel::InRegisters(proven), "tf1d/unlit: ", "within 3.922e-3 "),
+        (lit, ExactKernel::InRegisters(estimated), "tf1d/lit: ", "misses is estimated"),
+        (&asked, ExactKernel::InRegisters(proven), "tf1d/lit-proven: ", "within 3.922e-3 "),
+        (&narrow, ExactKernel::Double, "tf1d/lit: ", "all of it proven"),
+    ] {
+        let plan = plan(rest);
+        assert_eq!((plan.exact_kernel, plan.bound()), (Some(kernel), Some(kernel.bound())), "{rest}");
+        let text = explain(&plan);
+        assert!(text.contains(name) && text.contains(said), "{rest}: {name} or {said} is missing in\n{text}");
+        let word = if kernel.bound() == estimated { "estimated" } else { "proven" };
+        assert_eq!(explain_json(&plan)["bound"], word, "{rest}");
+    }
+    assert_eq!(plan("integrate: march\n").bound(), None, "marching has none");
 }
 
 #[test]

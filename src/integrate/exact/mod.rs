@@ -32,16 +32,17 @@ use crate::classify::{Baked, BakedAlike, Classifier, OneD, TwoD, bake, bake_alik
 use crate::error::{Error, Fault, Result};
 use crate::field::Voxel;
 use crate::math::Real;
-use crate::plan::{Bound, Exact};
+use crate::plan::{Bound, Exact, ExactKernel};
 use crate::scene::{ClassifyAt, Model, Ray, Rays, Scene, Shading};
 use crate::simd::{Level, Pairs};
 use crate::volume::{Samples, Volume};
 
 use super::classify_voxels::classify_voxels;
 use super::light_volumes::{LightVolumes, Transmittances};
+use super::occupancy::Occupancy;
 use super::texels::{Component, Rgba};
 use super::tiles::{self, Radiance};
-use super::{Rendered, Statistics};
+use super::{Rendered, Schedule, Statistics};
 use cells::Domain;
 use depth::Extinction;
 use lattice::Lattice;
@@ -74,7 +75,7 @@ pub(super) fn check(settings: &Exact) -> Result<()> {
 
 /// The tracer for a scene; of views from several cameras, any is as good as the others.
 pub(super) fn frame_tracer<'a>(
-    level: Level,
+    schedule: Schedule,
     volume: &'a Volume,
     scene: &'a Scene,
     settings: &Exact,
@@ -83,7 +84,7 @@ pub(super) fn frame_tracer<'a>(
         Bound::Estimated => Precision::Estimated,
         Bound::Proven => Precision::Single,
     };
-    tracer_at(level, volume, scene, settings.tolerance, precision)
+    scheduled(schedule, volume, scene, settings.tolerance, precision)
 }
 
 /// Renders with a tracer.
@@ -97,6 +98,7 @@ pub(super) fn render(frame: &super::Frame<'_>, tracer: &dyn Tracer) -> Rendered 
     let statistics = Statistics {
         samples: tally.samples,
         error_bound: Some(tally.error_bound),
+        bound: Some(tracer.bound()),
         rays: tally.rays,
         kernel: tracer.kernel().to_string(),
     };
@@ -129,6 +131,11 @@ pub trait Tracer: Sync {
         }
     }
 
+    /// What is known of the bounds of its rays, but for rounding, which is estimated by all.
+    fn bound(&self) -> Bound {
+        Bound::Proven
+    }
+
     /// What runs, such as `exact/i16/tf2d/lit/f32`.
     fn kernel(&self) -> &str;
 }
@@ -147,15 +154,26 @@ pub fn tracer_at<'a>(
     tolerance: f64,
     precision: Precision,
 ) -> Box<dyn Tracer + 'a> {
+    scheduled(Schedule { level, ..Schedule::default() }, volume, scene, tolerance, precision)
+}
+
+fn scheduled<'a>(
+    schedule: Schedule,
+    volume: &'a Volume,
+    scene: &'a Scene,
+    tolerance: f64,
+    precision: Precision,
+) -> Box<dyn Tracer + 'a> {
     match volume.samples() {
-        Samples::I16(samples) => for_samples(level, volume, scene, samples, tolerance, precision),
-        Samples::F32(samples) => for_samples(level, volume, scene, samples, tolerance, precision),
-        Samples::Rgba8(texels) => for_colors(volume, scene, texels, tolerance),
-        Samples::Rgba16(texels) => for_colors(volume, scene, texels, tolerance),
+        Samples::I16(samples) => for_samples(schedule, volume, scene, samples, tolerance, precision),
+        Samples::F32(samples) => for_samples(schedule, volume, scene, samples, tolerance, precision),
+        Samples::Rgba8(texels) => for_colors(schedule, volume, scene, texels, tolerance),
+        Samples::Rgba16(texels) => for_colors(schedule, volume, scene, texels, tolerance),
     }
 }
 
 fn for_colors<'a, T: Component>(
+    schedule: Schedule,
     volume: &'a Volume,
     scene: &'a Scene,
     texels: &'a [[T; 4]],
@@ -163,11 +181,11 @@ fn for_colors<'a, T: Component>(
 ) -> Box<dyn Tracer + 'a> {
     let Some(encoding) = volume.rgba_encoding() else { unreachable!("colours are understood in some way") };
     let name = format!("exact/{}/unlit/f64", T::NAME);
-    voxels::tracer(volume, scene, Rgba::new(texels, encoding), tolerance, name)
+    voxels::tracer(schedule, volume, scene, Rgba::new(texels, encoding), tolerance, name)
 }
 
 fn for_samples<'a, V: Voxel + Pairs>(
-    level: Level,
+    schedule: Schedule,
     volume: &'a Volume,
     scene: &'a Scene,
     samples: &'a [V],
@@ -182,7 +200,7 @@ fn for_samples<'a, V: Voxel + Pairs>(
             let classifier = if scene.transfer_function.reads_gradient() { "tf2d" } else { "tf1d" };
             let lit = if scene.shading.is_some() { "lit" } else { "unlit" };
             let name = format!("exact/voxels/{classifier}/{lit}/f64");
-            return voxels::tracer(volume, scene, classify_voxels(volume, scene), tolerance, name);
+            return voxels::tracer(schedule, volume, scene, classify_voxels(volume, scene), tolerance, name);
         }
         Model::Value(model) if !model.of.reads_transfer_function() => {
             let trace = move |ray: &Ray| models::show_value(&lattice, &shown, rescale, model, ray);
@@ -195,7 +213,7 @@ fn for_samples<'a, V: Voxel + Pairs>(
         Model::Light | Model::Value(_) => {}
     }
     let tf = &scene.transfer_function;
-    let of = Of { volume, scene, tolerance, voxel: V::NAME, level, precision };
+    let of = Of { volume, scene, tolerance, voxel: V::NAME, schedule };
     if let Some((mask, classes)) = scene.effects.mask.as_ref().zip(volume.classes()) {
         let nearest = Nearest::new(classes, volume.grid());
         // In f64 alone, which keeps the number of kernels small.
@@ -210,23 +228,29 @@ fn for_samples<'a, V: Voxel + Pairs>(
             }
         };
     }
-    let double = bake::<f64>(tf, rescale);
-    // Across an interval this narrow, the rounding of a value in f32 would cost more than rounding may.
-    let too_narrow = double.narrowest() < SHARE_OF_ROUNDING * f64::from(f32::EPSILON) / tolerance;
-    let single = precision != Precision::Double && !too_narrow;
-    if single && let Some(voxels) = of.voxels(samples) {
-        return match (double, bake::<f32>(tf, rescale)) {
+    let kernel = match precision {
+        Precision::Estimated => ExactKernel::of(scene, volume, &Exact { tolerance, bound: Bound::Estimated }),
+        Precision::Single => ExactKernel::of(scene, volume, &Exact { tolerance, bound: Bound::Proven }),
+        Precision::Double => ExactKernel::Double,
+    };
+    let baked = (bake::<f64>(tf, rescale), bake::<f32>(tf, rescale));
+    if let ExactKernel::InRegisters(bound) = kernel
+        && let Some(voxels) = Voxels::new(volume, samples)
+    {
+        return match baked {
             (Baked::OneD(double), Baked::OneD(other)) => {
-                of.stream("tf1d", voxels, OfValue::new(&other), &other, Classified { lattice, classifier: double })
+                let double = Classified { lattice, classifier: double };
+                of.stream("tf1d", bound, voxels, OfValue::new(&other), &other, double)
             }
             (Baked::TwoD(double), Baked::TwoD(other)) => {
-                let function = OfValueAndMagnitude::new(&other);
-                of.stream("tf2d", voxels, function, &other, Classified { lattice, classifier: double })
+                let double = Classified { lattice, classifier: double };
+                of.stream("tf2d", bound, voxels, OfValueAndMagnitude::new(&other), &other, double)
             }
             _ => unreachable!("both precisions bake the same transfer function"),
         };
     }
-    match (double, bake::<f32>(tf, rescale)) {
+    let single = kernel != ExactKernel::Double;
+    match baked {
         (Baked::OneD(double), Baked::OneD(other)) => {
             let other = single.then_some(Classified { lattice, classifier: other });
             of.tracer("tf1d", Classified { lattice, classifier: double }, other)
@@ -245,28 +269,15 @@ struct Of<'a> {
     scene: &'a Scene,
     tolerance: f64,
     voxel: &'static str,
-    level: Level,
-    precision: Precision,
+    schedule: Schedule,
 }
 
 impl<'a> Of<'a> {
-    /// The voxels as the fast kernel reads them, where it renders the scene.
-    fn voxels<V: Voxel + Pairs>(&self, samples: &'a [V]) -> Option<Voxels<'a, V>> {
-        let Of { volume, scene, .. } = *self;
-        let plain = scene.model == Model::Light && !scene.effects.change_light();
-        let can_be_lit = scene.shading.is_none() || self.lighting().is_some();
-        (plain && can_be_lit).then(|| Voxels::new(volume, samples)).flatten()
-    }
-
-    /// The shading as the fast kernel has it; `None` for none, and for one that it does not have.
-    fn lighting(&self) -> Option<Lighting> {
-        Lighting::new(self.scene.shading.as_ref()?, Brightest::of(self.scene).color)
-    }
-
     /// The fast kernel.
     fn stream<V, T, C, D, const F: usize>(
         self,
         name: &str,
+        bound: Bound,
         voxels: Voxels<'a, V>,
         function: T,
         classifier: &C,
@@ -279,15 +290,17 @@ impl<'a> Of<'a> {
         D: Medium<f64> + 'a,
         Read: Fields<F>,
     {
-        let lighting = self.lighting();
-        let Of { volume, scene, tolerance, voxel, level, precision } = self;
+        let Of { volume, scene, tolerance, voxel, schedule: Schedule { level, empty_space_skipping, .. } } = self;
         let everything = [0.0, f32::MAX];
-        let occupancy = voxels.occupancy(|range| !classifier.is_empty(range, everything));
+        let occupancy = match empty_space_skipping {
+            true => voxels.occupancy(|range| !classifier.is_empty(range, everything)),
+            false => Occupancy::full(volume.grid().dims()),
+        };
         let brightest = Brightest::of(scene);
-        let has_nodes = lighting.is_some() && precision == Precision::Estimated && brightest.color <= MOST_COLOR;
-        let estimate = has_nodes.then(|| Estimate::within(tolerance));
+        let lighting = scene.shading.as_ref().and_then(|shading| Lighting::new(shading, brightest.color));
+        let estimate = (bound == Bound::Estimated).then(|| Estimate::within(tolerance));
         let tolerance = estimate.map_or(tolerance, |estimate| estimate.proven);
-        let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest };
+        let frame = self.frame(tolerance, brightest);
         let (grid, clip) = (volume.grid(), &scene.effects.clip);
         let lit = match (&lighting, estimate) {
             (None, _) => "unlit",
@@ -296,6 +309,12 @@ impl<'a> Of<'a> {
         };
         let name = format!("exact/{voxel}/{name}/{lit}/{level}");
         Box::new(Stream { level, frame, grid, clip, voxels, occupancy, function, lighting, estimate, double, name })
+    }
+
+    /// What all rays share.
+    fn frame(&self, tolerance: f64, brightest: Brightest) -> Frame<'a> {
+        let domain = Domain::new(self.volume, self.scene);
+        Frame { domain, tolerance, brightest, ends_early: self.schedule.early_termination }
     }
 
     /// The kernel for a medium: by its effects of light, its shading, or the optical depth alone. `single` is the same medium
@@ -307,13 +326,13 @@ impl<'a> Of<'a> {
         single: Option<S>,
     ) -> Box<dyn Tracer + 'a> {
         let Of { volume, scene, tolerance, voxel, .. } = self;
-        let domain = Domain::new(volume, scene);
         let name = |what: &str, real: &str| format!("exact/{voxel}/{classifier}/{what}/{real}");
         if let Model::Value(model) = &scene.model {
+            let domain = Domain::new(volume, scene);
             let trace = move |ray: &Ray| models::show_depth(&double, &domain, model, ray);
             return Box::new(Direct { trace, name: name(model.of.name(), "f64") });
         }
-        let frame = Frame { domain, tolerance, brightest: Brightest::of(scene) };
+        let frame = self.frame(tolerance, Brightest::of(scene));
         if scene.effects.change_light() {
             let lights = LightVolumes::new(volume, scene, &Transmittances::unknown(volume, scene));
             let name = name("atmosphere", "f64");
@@ -324,14 +343,6 @@ impl<'a> Of<'a> {
         Box::new(Kernel { frame, shading, double, single, name })
     }
 }
-
-/// What nodes miss is estimated over what is absorbed. Where something shines brighter than this over what it absorbs, and all the
-/// more where it absorbs nothing, that says little, and the bound is proven.
-const MOST_COLOR: f64 = 16.0;
-
-/// f32 is used where an interval between knots is at least this many roundings wide, over the tolerance. On public scans a
-/// ray's error by rounding was up to a thirtieth of a rounding over that width; this keeps it within the budget's share.
-const SHARE_OF_ROUNDING: f64 = 16.0;
 
 /// A kernel that needs nothing but its ray.
 struct Direct<F> {

@@ -2,7 +2,7 @@
 
 use crate::math::Real;
 use crate::scene::{Ray, Scene};
-use crate::transfer::{Optics, Side, TransferFunction};
+use crate::transfer::TransferFunction;
 
 use super::budget::Budget;
 use super::cells::{Domain, Segment};
@@ -39,6 +39,8 @@ pub(super) struct Frame<'a> {
     pub(super) domain: Domain<'a>,
     pub(super) tolerance: f64,
     pub(super) brightest: Brightest,
+    /// Whether a ray ends as soon as its budget allows for all that may follow.
+    pub(super) ends_early: bool,
 }
 
 /// Bounds on the light that the rest of a ray may bring.
@@ -57,16 +59,14 @@ pub(super) struct Brightest {
 }
 
 impl Brightest {
-    /// Bounds for a scene. Between knots σ and q are bilinear, so what holds at the corners of a patch holds inside it.
+    /// Bounds for a scene.
     pub(super) fn of(scene: &Scene) -> Self {
         let (mut color, mut emission, mut extinction) = (0.0f64, 0.0f64, 0.0f64);
-        for optics in scene.transfer_functions().flat_map(at_corners) {
+        for optics in scene.transfer_functions().flat_map(TransferFunction::corners) {
             let q = optics.emission_per_mm.into_iter().fold(0.0, f64::max);
             emission = emission.max(q);
             extinction = extinction.max(optics.extinction_per_mm);
-            if q > 0.0 {
-                color = color.max(q / optics.extinction_per_mm);
-            }
+            color = color.max(optics.largest_color());
         }
         let (reflected, highlight) = scene.shading.as_ref().map_or((1.0, 0.0), |s| s.largest_factors());
         let unshaded = Brightest {
@@ -115,15 +115,6 @@ impl Brightest {
     }
 }
 
-/// What a transfer function is at the corners of its patches, from all sides.
-fn at_corners(tf: &TransferFunction) -> impl Iterator<Item = Optics> {
-    let sides =
-        [(Side::Left, Side::Left), (Side::Left, Side::Right), (Side::Right, Side::Left), (Side::Right, Side::Right)];
-    let gradients = tf.gradient_knots();
-    let corners = tf.value_knots().into_iter().flat_map(move |v| gradients.clone().into_iter().map(move |g| (v, g)));
-    corners.flat_map(move |(v, g)| sides.map(|(v_side, g_side)| tf.evaluate_side(v, v_side, g, g_side)))
-}
-
 impl Frame<'_> {
     /// Traces one ray.
     pub(super) fn trace<R: Real, M: Medium<R>, S: Shader<R>>(
@@ -156,7 +147,7 @@ impl Frame<'_> {
                 &mut light,
             );
             let rest = self.brightest.of_rest(light.transmittance, end_mm - segment.exit_mm);
-            if light.budget.may_end(rest) {
+            if self.ends_early && light.budget.may_end(rest) {
                 return Some(light.ended(rest));
             }
         }

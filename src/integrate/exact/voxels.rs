@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::field::Corners;
+use crate::integrate::Schedule;
 use crate::integrate::texels::Texels;
 use crate::math::bernstein::{Cubic, restrict};
 use crate::math::each;
@@ -27,13 +28,15 @@ struct AtVoxels<T> {
 
 /// Traces rays through a medium given at the voxels; shading is in the texels already.
 pub(super) fn tracer<'a, T: Texels<f64> + 'a>(
+    schedule: Schedule,
     volume: &'a Volume,
     scene: &'a Scene,
     texels: T,
     tolerance: f64,
     name: String,
 ) -> Box<dyn Tracer + 'a> {
-    let frame = Frame { domain: Domain::new(volume, scene), tolerance, brightest: brightest(&texels) };
+    let (domain, brightest) = (Domain::new(volume, scene), brightest(&texels));
+    let frame = Frame { domain, tolerance, brightest, ends_early: schedule.early_termination };
     let medium = AtVoxels { corners: Corners::new(volume.grid().dims()), texels };
     let trace = move |ray: &Ray| frame.trace(ray, &medium, &Unlit, &mut Splits::default());
     Box::new(Direct { trace, name })

@@ -77,7 +77,8 @@ impl<'a, V: Voxel, S: Shader> LevelChanges<'a, V, S> {
             Some(walk.light.radiance(walk.samples))
         });
         let kernel = format!("march/{}/level-changes/{}/f32", V::NAME, S::NAME);
-        let statistics = Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel };
+        let statistics =
+            Statistics { samples: tally.samples, error_bound: None, bound: None, rays: tally.rays, kernel };
         Rendered { image, statistics }
     }
 

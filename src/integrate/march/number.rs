@@ -131,7 +131,8 @@ impl Of<'_> {
                 Some(Radiance { color: [light; 3], transmittance: 0.0, samples, error_bound: 0.0 })
             },
         );
-        let statistics = Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel: name };
+        let statistics =
+            Statistics { samples: tally.samples, error_bound: None, bound: None, rays: tally.rays, kernel: name };
         Rendered { image, statistics }
     }
 }

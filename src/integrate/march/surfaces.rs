@@ -59,7 +59,7 @@ fn show<V: Voxel>(frame: &Frame<'_>, settings: &March, surfaces: &[Surface], vox
         Some(Radiance { color, transmittance, samples, error_bound: 0.0 })
     });
     let kernel = format!("march/{}/surfaces/f32", V::NAME);
-    let statistics = Statistics { samples: tally.samples, error_bound: None, rays: tally.rays, kernel };
+    let statistics = Statistics { samples: tally.samples, error_bound: None, bound: None, rays: tally.rays, kernel };
     Ok(Rendered { image, statistics })
 }
 

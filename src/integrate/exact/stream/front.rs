@@ -3,13 +3,15 @@
 use super::queue::{Passed, Results};
 use super::walk::{RAYS, STEPS, Walks};
 use crate::integrate::exact::budget::Budget;
-use crate::integrate::exact::ray::{Brightest, Front, Traced};
+use crate::integrate::exact::ray::{Brightest, Frame, Front, Traced};
 use crate::simd::{Doubles, Ints, Lanes, Mask};
 
 /// The light of the rays in flight, by seat: the [`Front`] of each, side by side.
 #[derive(Debug)]
 pub(super) struct Fronts {
     tolerance: f64,
+    /// What pieces may cost together with the rest of a ray that ends early; none fits where no ray does.
+    most_at_end: f64,
     brightest: Brightest,
     radiance: [[f64; RAYS]; 3],
     transmittance: [f64; RAYS],
@@ -26,9 +28,11 @@ pub(super) struct Fronts {
 
 impl Fronts {
     /// Nobody.
-    pub(super) fn new(tolerance: f64, brightest: Brightest) -> Self {
+    pub(super) fn new(&Frame { tolerance, brightest, ends_early, .. }: &Frame<'_>) -> Self {
+        let most_at_end = if ends_early { Budget::of_pieces_and_rest(tolerance) } else { f64::NEG_INFINITY };
         Fronts {
             tolerance,
+            most_at_end,
             brightest,
             radiance: [[0.0; RAYS]; 3],
             transmittance: [0.0; RAYS],
@@ -107,7 +111,7 @@ impl Fronts {
         let splat = L::Doubles::splat;
         let [by_absorption, by_length] = Budget::of_pieces(self.tolerance);
         let (by_absorption, by_length) = (splat(by_absorption), splat(by_length));
-        let most = splat(Budget::of_pieces_and_rest(self.tolerance));
+        let most = splat(self.most_at_end);
         let (per_absorbed, per_mm) = (splat(self.brightest.per_absorbed), splat(self.brightest.per_mm));
         let per_length_mm = L::Doubles::load(&walks.per_lengths_mm()[first..]);
         let length_mm = L::Doubles::load(&walks.lengths_mm()[first..]);

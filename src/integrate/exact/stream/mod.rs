@@ -35,6 +35,7 @@ use super::shade::{Lit, Unlit};
 use super::splits::Splits;
 use crate::field::{Chords, Voxel};
 use crate::integrate::occupancy::Occupancy;
+use crate::plan::Bound;
 use crate::scene::{Clip, Ray, Rays};
 use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
@@ -50,6 +51,9 @@ pub(super) use light::Lighting;
 pub(super) use look::{Fields, Read};
 pub(super) use shaded::{DEVIATIONS, Estimate};
 pub(super) use voxels::Voxels;
+
+/// What is allowed behind less light than this is as if so much were left, so that f32 holds it: of rays that do not end early.
+const FAINTEST: f64 = 1e-12;
 
 /// The fast kernel for one transfer function of `F` fields.
 pub(super) struct Stream<'a, V, T, D, const F: usize> {
@@ -88,6 +92,10 @@ where
         KEPT.with_borrow_mut(|(chords, splits)| self.level.run(Rounds { stream: self, rays, chords, ended, splits }));
     }
 
+    fn bound(&self) -> Bound {
+        self.estimate.map_or(Bound::Proven, |_| Bound::Estimated)
+    }
+
     fn kernel(&self) -> &str {
         &self.name
     }
@@ -120,7 +128,7 @@ where
         let mut passed = Passed::new();
         let (mut whole, mut cut) = (Shown::<F>::new(), Shown::<F>::new());
         let mut results = Results::new();
-        let mut fronts = Fronts::new(stream.frame.tolerance, stream.frame.brightest);
+        let mut fronts = Fronts::new(&stream.frame);
         // Who sits where, and looks where.
         let mut seated: [Option<(usize, DVec3)>; RAYS] = [None; RAYS];
         let mut waiting = 0..rays.len();
@@ -179,12 +187,13 @@ where
                 for (seat, _) in seated.iter().enumerate().filter(|(_, ray)| ray.is_some()) {
                     // What is behind counts the less the less light gets there.
                     let light = fronts.get(seat);
-                    let counts = light.transmittance / walks.per_length_mm(seat);
+                    let transmittance = light.transmittance.max(FAINTEST);
+                    let counts = transmittance / walks.per_length_mm(seat);
                     allowance.per_mm[seat] = (per_ray / counts) as f32;
-                    let left = light.left(walks.done(seat)) / light.transmittance;
+                    let left = light.left(walks.done(seat)) / transmittance;
                     allowance.per_cell[seat] = (left.max(0.0) / STEPS as f64) as f32;
                     if let Some(estimate) = &stream.estimate {
-                        allowance.estimate(seat, estimate, light.transmittance);
+                        allowance.estimate(seat, estimate, transmittance);
                     }
                 }
                 let (passed, voxels, seen, allowance) = (&passed, &stream.voxels, &seen, &allowance);
