@@ -13,6 +13,7 @@ mod budget;
 mod cells;
 mod depth;
 mod lattice;
+mod linear;
 mod masked;
 mod medium;
 mod models;

@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::light::Finish;
 use crate::classify::{OneD, TwoD};
+use crate::integrate::exact::linear::{self, Linear};
 use crate::integrate::exact::piece::{Integral, Optics};
 use crate::math::bernstein::{Cubic, elevate, product};
 use crate::math::each;
@@ -38,6 +39,9 @@ pub(in crate::integrate::exact) struct OfValue {
     axis: Axis,
     low: [Table; COMPONENTS],
     slope: [Table; COMPONENTS],
+    /// What [`Linear`] has of these.
+    drift: [Table; 3],
+    largest_drift: Table,
     /// Lit intervals below each.
     lit_before: Table,
     /// The values from the first lit interval to the last, and whether there are dark ones between.
@@ -65,6 +69,9 @@ impl OfValue {
             })
             .collect();
         let table = |c: usize, k: usize| Table::new(&pieces.iter().map(|p| p[c][k]).collect::<Vec<f32>>());
+        let drifts: Vec<([f32; 3], f32)> =
+            pieces.iter().map(|p| linear::drift(&each(|c| p[c][0]), &each(|c| p[c][1]))).collect();
+        let drift = |c: usize| Table::new(&drifts.iter().map(|(drift, _)| drift[c]).collect::<Vec<f32>>());
         let is_lit: Vec<bool> = pieces.iter().map(|piece| piece.iter().flatten().any(|&x| x != 0.0)).collect();
         let mut lit_before = vec![0.0];
         for &lit in &is_lit {
@@ -77,6 +84,8 @@ impl OfValue {
             axis,
             low: std::array::from_fn(|c| table(c, 0)),
             slope: std::array::from_fn(|c| table(c, 1)),
+            drift: std::array::from_fn(drift),
+            largest_drift: Table::new(&drifts.iter().map(|&(_, largest)| largest).collect::<Vec<f32>>()),
             lit_before: Table::new(&lit_before),
             lit,
             has_gaps,
@@ -115,21 +124,24 @@ impl Function<1> for OfValue {
         finish: &impl Finish<L>,
     ) -> Integral<L> {
         let anchor = self.axis.anchor::<L>(i);
-        let dv: Cubic<L> = each(
+        let distance: Cubic<L> = each(
             #[inline(always)]
             |k| value[k] - anchor,
         );
-        let [r, g, b, extinction]: [Cubic<L>; 4] = each(
+        let low = each(
             #[inline(always)]
-            |c| {
-                let (low, slope) = (L::pick(&self.low[c], i), L::pick(&self.slope[c], i));
-                each(
-                    #[inline(always)]
-                    |k| slope.mul_plus(dv[k], low),
-                )
-            },
+            |c| L::pick(&self.low[c], i),
         );
-        finish.finish::<4, 5>(&Optics { emission: [r, g, b], extinction }, length_mm)
+        let slope = each(
+            #[inline(always)]
+            |c| L::pick(&self.slope[c], i),
+        );
+        let drift = each(
+            #[inline(always)]
+            |c| L::pick(&self.drift[c], i),
+        );
+        let largest_drift = L::pick(&self.largest_drift, i);
+        finish.finish_linear(&Linear { distance, low, slope, drift, largest_drift }, length_mm)
     }
 }
 

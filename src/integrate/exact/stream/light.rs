@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::walk::RAYS;
+use crate::integrate::exact::linear::Linear;
 use crate::integrate::exact::piece::{Integral, LinearFactors, Optics};
 use crate::math::bernstein::{Cubic, value};
 use crate::math::each;
@@ -16,6 +17,12 @@ pub(super) const LIGHTS: usize = MOST_LIGHTS;
 pub(in crate::integrate::exact) trait Finish<L: Lanes> {
     /// The integral over a piece; `M` must be `N + 1`.
     fn finish<const N: usize, const M: usize>(&self, optics: &Optics<L, N>, length_mm: L) -> Integral<L>;
+
+    /// The same where all follow one value.
+    #[inline(always)]
+    fn finish_linear(&self, linear: &Linear<L>, length_mm: L) -> Integral<L> {
+        self.finish::<4, 5>(&linear.optics(), length_mm)
+    }
 }
 
 /// Emission as it is.
@@ -26,6 +33,11 @@ impl<L: Lanes> Finish<L> for AsItIs {
     #[inline(always)]
     fn finish<const N: usize, const M: usize>(&self, optics: &Optics<L, N>, length_mm: L) -> Integral<L> {
         optics.integrate(length_mm)
+    }
+
+    #[inline(always)]
+    fn finish_linear(&self, linear: &Linear<L>, length_mm: L) -> Integral<L> {
+        linear.integrate(length_mm)
     }
 }
 

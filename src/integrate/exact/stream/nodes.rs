@@ -7,6 +7,7 @@
 //! standard deviations are estimated, and their squares add up along a ray.
 
 use super::light::{Finish, LIGHTS, Lighting, Lights, dot, power};
+use crate::integrate::exact::linear::Linear;
 use crate::integrate::exact::piece::{Integral, Optics};
 use crate::math::bernstein::{self, Cubic, sum};
 use crate::math::each;
@@ -178,12 +179,98 @@ impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
             let varies = brightest_unlit * range(&self.lambert[n]) + unlit.absorbed * range(&self.gloss[n]);
             drift += number(brightest(color)) * varies;
         }
-        // Where little gets through, the nodes lie behind what is seen.
         let depth = length_mm * (number(1.0 / N as f64) * sum(&optics.extinction));
+        Integral { radiance, error: self.error(&unlit, depth, drift), ..unlit }
+    }
+
+    /// As [`finish`](Self::finish). What is shared out to node `i` is `α t_i + β t_i d_i`, with the same `t_i` and `d_i` for all channels and
+    /// for extinction, so that sums over nodes are made once: of `t_i` and of `t_i d_i`, and of both with each light.
+    #[inline(always)]
+    fn finish_linear(&self, linear: &Linear<L>, length_mm: L) -> Integral<L> {
+        let number = L::from_f64;
+        let unlit = linear.integrate(length_mm);
+        let (mut seen, mut seen_distance) = ([L::ZERO; NODES], [L::ZERO; NODES]);
+        for i in 0..NODES {
+            let (mut distance, mut so_far) = (L::ZERO, L::ZERO);
+            for k in 0..4 {
+                distance += number(table::<4>().values[i][k]) * linear.distance[k];
+                so_far += number(table::<4>().integrals[i][k]) * linear.distance[k];
+            }
+            let depth = linear.low[3] * number(PLACES[i]) + linear.slope[3] * so_far;
+            seen[i] = number(WEIGHTS[i]) * (L::ONE - (length_mm * depth).absorbed());
+            seen_distance[i] = seen[i] * distance;
+        }
+        let (all, all_distance) = (sum(&seen), sum(&seen_distance));
+        // Of each component, one over what is shared out; 0 for none.
+        let per_total: [L; 4] = each(
+            #[inline(always)]
+            |c| {
+                let total = linear.low[c] * all + linear.slope[c] * all_distance;
+                L::select(L::ZERO.lt(total), L::ONE / total, L::ZERO)
+            },
+        );
+        let mean = Mean { linear, seen, seen_distance, per_total };
+        let mut radiance = unlit.radiance;
+        let mut factors = [number(self.lighting.ambient); 3];
+        let mut drift = L::ZERO;
+        let brightest_unlit = unlit.radiance[0].max(unlit.radiance[1]).max(unlit.radiance[2]);
+        let mut shine = [L::ZERO; 3];
+        for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
+            let sums = mean.sums(&self.lambert[n]);
+            for c in 0..3 {
+                factors[c] += number(f64::from(color[c])) * mean.of(c, &sums, self.lighting.diffuse);
+            }
+            let mut varies = brightest_unlit * range(&self.lambert[n]);
+            if self.lighting.specular != 0.0 {
+                let gloss = unlit.absorbed * mean.of(3, &mean.sums(&self.gloss[n]), self.lighting.specular);
+                for c in 0..3 {
+                    shine[c] += number(f64::from(color[c])) * gloss;
+                }
+                varies += unlit.absorbed * range(&self.gloss[n]);
+            }
+            drift += number(brightest(color)) * varies;
+        }
+        for c in 0..3 {
+            radiance[c] = factors[c] * radiance[c] + shine[c];
+        }
+        let depth = length_mm * linear.at(3, linear.mean_distance());
+        Integral { radiance, error: self.error(&unlit, depth, drift), ..unlit }
+    }
+}
+
+impl<L: Lanes> AtNodes<'_, L> {
+    /// The error of a shaded piece that is so deep, by what its unshaded integral may miss, and by how much its light may change if
+    /// seen elsewhere.
+    #[inline(always)]
+    fn error(&self, unlit: &Integral<L>, depth: L, drift: L) -> L {
+        // Where little gets through, the nodes lie behind what is seen.
         let square = depth * depth;
-        let shift = (number(SHIFT_PER_DEPTH) * square * square).min(number(LARGEST_SHIFT));
-        let largest = number(self.lighting.largest_reflected);
-        Integral { radiance, error: largest * unlit.error + shift * drift, ..unlit }
+        let shift = (L::from_f64(SHIFT_PER_DEPTH) * square * square).min(L::from_f64(LARGEST_SHIFT));
+        L::from_f64(self.lighting.largest_reflected) * unlit.error + shift * drift
+    }
+}
+
+/// Means of factors at nodes over what is shared out to them.
+struct Mean<'p, L> {
+    linear: &'p Linear<L>,
+    seen: [L; NODES],
+    seen_distance: [L; NODES],
+    per_total: [L; 4],
+}
+
+impl<L: Lanes> Mean<'_, L> {
+    /// Sums of a factor over the nodes.
+    #[inline(always)]
+    fn sums(&self, at: &[L; NODES]) -> [L; 2] {
+        [dot_nodes(&self.seen, at), dot_nodes(&self.seen_distance, at)]
+    }
+
+    /// The mean of a factor of these sums over a component. What is next to nothing may round to anything, but not to more than there
+    /// is.
+    #[inline(always)]
+    fn of(&self, component: usize, [sum, sum_distance]: &[L; 2], largest: f64) -> L {
+        let total = self.linear.low[component] * *sum + self.linear.slope[component] * *sum_distance;
+        (total * self.per_total[component]).max(L::ZERO).min(L::from_f64(largest))
     }
 }
 
@@ -281,6 +368,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::integrate::exact::linear::drift;
     use crate::math::bernstein::{trilinear_along, value};
     use crate::scene::{Light, Shading};
 
@@ -394,6 +482,33 @@ mod tests {
                 let expected = f64::from(unlit.radiance[c]) * reflected[c] + f64::from(unlit.absorbed) * highlight[c];
                 let found = f64::from(lit.radiance[c]);
                 assert!((found - expected).abs() < 2e-6, "scale {scale}, channel {c}: {found}, expected {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_follows_one_value_is_shared_out_as_its_polynomials_are() {
+        for (two_sided, noise) in [(false, 0.3), (true, 0.1), (true, 1.0)] {
+            let shading = shading(0.7, 0.2, 10.0, two_sided);
+            let lighting = Lighting::new(&shading, 1.0).expect("a light that lanes can have");
+            let mut random = random();
+            for n in 0..1000 {
+                let g = gradient_along(&mut random, noise);
+                let single = |a: usize| powers(&g[a].map(|x| x as f32));
+                let light = lighting.at_nodes(&[single(0), single(1), single(2)], &lights(&shading), [0.0, 1.0]);
+                let mut some = || (0.5 + 0.5 * random()) as f32;
+                let (low, slope) = ([some(), some(), 0.0, some()], [some(), 0.0, some(), some()]);
+                let (drift, largest_drift) = drift(&low, &slope);
+                let distance = [some(), some(), some(), some()];
+                let linear = Linear { distance, low, slope, drift, largest_drift };
+                let length_mm = [1e-3, 1.0, 30.0][n % 3];
+                let found = light.finish_linear(&linear, length_mm);
+                let expected = light.finish::<4, 5>(&linear.optics(), length_mm);
+                let apart = |a: f32, b: f32| (a - b).abs() > 1e-5 * expected.absorbed;
+                let differs = (0..3).any(|c| apart(found.radiance[c], expected.radiance[c]));
+                let what = format!("{found:?}, expected {expected:?}");
+                assert!(!differs && !apart(found.absorbed, expected.absorbed), "{what}");
+                assert!((found.error - expected.error).abs() <= 1e-4 * expected.error + 1e-6, "{what}");
             }
         }
     }
