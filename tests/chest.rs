@@ -9,10 +9,10 @@ use pellucid::synthetic::{BodyPhantom, Region, body, body_labels};
 use pellucid::volume::Samples;
 use sha2::{Digest, Sha256};
 
-/// The phantom without noise, in voxels of 2.25 mm.
-static CHEST: LazyLock<Volume> = LazyLock::new(|| make(160, 1, 0.0));
+/// The phantom of the default size, without noise.
+static CHEST: LazyLock<Volume> = LazyLock::new(|| make(256, 1, 0.0));
 /// Its label map.
-static LABELS: LazyLock<Volume> = LazyLock::new(|| body_labels(Region::Chest, 160).expect("it can be made"));
+static LABELS: LazyLock<Volume> = LazyLock::new(|| body_labels(Region::Chest, 256).expect("it can be made"));
 
 fn make(size: usize, seed: u64, noise_hu: f64) -> Volume {
     body(&BodyPhantom { region: Region::Chest, size, seed, noise_hu }).expect("the phantom can be made")
@@ -154,7 +154,7 @@ fn organs_are_as_large_as_they_should_be() {
 #[test]
 fn the_chest_fits_the_field_of_view_and_is_cut_above_and_below_only() {
     let [nx, ny, nz] = CHEST.grid().dims();
-    assert_eq!([nx, ny, nz], [160, 160, 107]);
+    assert_eq!([nx, ny, nz], [256, 256, 171]);
     let low = CHEST.grid().index_to_lps_mm().transform_point3(DVec3::splat(-0.5));
     assert!((low - DVec3::new(-180.0, -178.0, -130.0)).length() < 1e-9, "lower corner: found {low}");
     let voxels = stored(&CHEST);
