@@ -101,7 +101,7 @@ impl Region {
         }
     }
 
-    /// Most bytes of the shapes, those cut down to blocks of all threads included.
+    /// Most bytes of the shapes with a few threads, each of which holds shapes cut down to its block.
     fn shape_bytes(self) -> u64 {
         match self {
             Region::Head => 1_450_000,
