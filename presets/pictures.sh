@@ -13,6 +13,7 @@ pipeline=$(mktemp -d)
 trap 'rm -rf "$pipeline"' EXIT
 
 head="phantom: { head: { size: 160 } }"
+chest="phantom: { chest: { size: 200 } }"
 body="source: $data/abdomen/ct.nrrd, values: hu"
 face="view: anterior, azimuth: 35, elevation: 5, fit: volume, zoom: 1.35"
 mouth="view: anterior, azimuth: 20, elevation: 10, fit: volume, zoom: 2"
@@ -32,7 +33,7 @@ picture() {
     rm -f "presets/pictures/$1.png.json" "presets/pictures/$1.json"
 }
 
-# Only these structures of the phantom, or these organs of the abdomen by their numbers.
+# Only these structures of a phantom, or these organs of the abdomen by their numbers.
 structures() { printf 'mask: { phantom: structures, default: hide, labels: { %s } }' "$1"; }
 organs() { printf 'mask: { source: "%s/abdomen/labels.nrrd", default: hide, labels: { %s } }' "$data" "$1"; }
 
@@ -45,7 +46,7 @@ picture brain "$head" "$face" "$(structures 'brain: show')"
 picture enamel "$head" "$mouth"
 picture engine "source: $data/engine.nrrd, values: arbitrary" "view: superior, azimuth: 35, elevation: -35, zoom: 1.4" "" "$octets"
 picture fat "$body" "$front" "" "" "opacity_scale: 0.3"
-# No picture of `heart`: the abdomen has no voxel of one, and the thorax slices end below it.
+picture heart "$chest" "view: anterior, azimuth: 15, elevation: 5, fit: volume, zoom: 1.8" "$(structures 'heart: show, vessels: show')"
 picture kidneys "$body" "$front" "$(organs '2: show, 3: show')" "" "shift_hu: -130"
 picture liver "$body" "$front" "$(organs '5: show')" "" "shift_hu: -50"
 picture lung "$body" "$front" "$(organs '10: show, 11: show, 14: show')"

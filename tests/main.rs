@@ -1,6 +1,7 @@
 //! One test binary; see README.md in this folder.
 
 mod analytic;
+mod chest;
 mod cli;
 mod clip;
 mod dicom;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use pellucid::synthetic::{HeadPhantom, head, head_labels, head_structures};
+use pellucid::synthetic::{BodyPhantom, Region, body, body_labels};
 use pellucid::volume::{Quantity, Samples};
 use pellucid::{Fault, Volume};
 use sha2::{Digest, Sha256};
@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 static HEAD: LazyLock<Volume> = LazyLock::new(|| make(256, 1, 0.0));
 
 fn make(size: usize, seed: u64, noise_hu: f64) -> Volume {
-    head(&HeadPhantom { size, seed, noise_hu }).expect("the phantom can be made")
+    body(&BodyPhantom { region: Region::Head, size, seed, noise_hu }).expect("the phantom can be made")
 }
 
 fn stored(volume: &Volume) -> &[i16] {
@@ -212,12 +212,13 @@ fn every_size_shows_the_same_head() {
 #[test]
 fn sizes_and_noise_out_of_range_are_refused_by_name() {
     for size in [0, 1, 1025, usize::MAX] {
-        let error = head(&HeadPhantom { size, ..HeadPhantom::default() }).expect_err("a size out of range");
+        let error = body(&BodyPhantom { size, ..BodyPhantom::of(Region::Head) }).expect_err("a size out of range");
         assert_eq!(error.fault(), Fault::Spec, "size {size}: {error}");
         assert!(error.to_string().contains("size") && error.to_string().contains("1024"), "found: {error}");
     }
     for noise_hu in [-1.0, 1000.5, f64::NAN, f64::INFINITY] {
-        let error = head(&HeadPhantom { size: 8, noise_hu, ..HeadPhantom::default() }).expect_err("noise out of range");
+        let error =
+            body(&BodyPhantom { size: 8, noise_hu, ..BodyPhantom::of(Region::Head) }).expect_err("noise out of range");
         assert_eq!(error.fault(), Fault::Spec, "noise {noise_hu}: {error}");
         assert!(error.to_string().contains("noise_hu"), "found: {error}");
     }
@@ -225,8 +226,8 @@ fn sizes_and_noise_out_of_range_are_refused_by_name() {
 
 #[test]
 fn the_label_map_names_the_structure_at_each_point() {
-    let labels = head_labels(128).expect("it can be made");
-    let structures: Vec<_> = head_structures().collect();
+    let labels = body_labels(Region::Head, 128).expect("it can be made");
+    let structures: Vec<_> = Region::Head.structures().collect();
     let points = [
         ("", [0.0, -128.0, 0.0]),
         ("skin", [0.0, 58.0, -90.0]),
@@ -246,7 +247,7 @@ fn the_label_map_names_the_structure_at_each_point() {
         let found = structures.iter().find(|(number, _)| *number == label).map_or("", |(_, name)| name);
         assert_eq!(found, name, "at {point:?}, label {label}");
     }
-    assert_eq!(labels.grid(), head(&HeadPhantom { size: 128, ..HeadPhantom::default() }).expect("made").grid());
+    assert_eq!(labels.grid(), body(&BodyPhantom { size: 128, ..BodyPhantom::of(Region::Head) }).expect("made").grid());
     let [low, high] = labels.value_range();
     assert_eq!((low, high), (0.0, structures.len() as f64), "all structures occur");
 }

@@ -7,7 +7,7 @@ use pellucid::io::dicom::{SeriesDescription, write_series};
 use pellucid::io::{labels, nrrd};
 use pellucid::pipeline::{self, Options};
 use pellucid::spec::{Spec, VolumeSource};
-use pellucid::synthetic::{self, HeadPhantom};
+use pellucid::synthetic::{self, BodyPhantom, Region};
 
 use super::stdout;
 
@@ -21,7 +21,9 @@ pub(super) struct Phantom {
 #[derive(Debug, clap::Subcommand)]
 enum Kind {
     /// A head: skin, skull, brain, ventricles, airways and teeth, in HU
-    Head(Head),
+    Head(Body),
+    /// A chest in the arterial phase: ribs, lungs, airways, heart with its chambers, great vessels and liver, in HU
+    Chest(Body),
     /// The formula of a pipeline's `volume: { analytic: … }`, sampled
     Analytic(Analytic),
     /// Three rings in changing colours: an RGBA volume
@@ -41,7 +43,7 @@ struct Rings {
 
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("target").required(true).multiple(true).args(["nrrd", "dicom", "labels"])))]
-struct Head {
+struct Body {
     /// Write a NRRD file
     #[arg(long, value_name = "FILE")]
     nrrd: Option<PathBuf>,
@@ -54,16 +56,16 @@ struct Head {
     #[arg(long, value_name = "FILE")]
     labels: Option<PathBuf>,
 
-    /// Voxels from ear to ear
-    #[arg(long, value_name = "N", default_value_t = HeadPhantom::default().size)]
+    /// Voxels from the patient's right to the left
+    #[arg(long, value_name = "N", default_value_t = BodyPhantom::of(Region::Head).size)]
     size: usize,
 
     /// Chooses the noise; the anatomy is always the same
-    #[arg(long, value_name = "SEED", default_value_t = HeadPhantom::default().seed)]
+    #[arg(long, value_name = "SEED", default_value_t = BodyPhantom::of(Region::Head).seed)]
     seed: u64,
 
     /// Standard deviation of the noise, HU
-    #[arg(long, value_name = "HU", default_value_t = HeadPhantom::default().noise_hu)]
+    #[arg(long, value_name = "HU", default_value_t = BodyPhantom::of(Region::Head).noise_hu)]
     noise_hu: f64,
 }
 
@@ -85,7 +87,8 @@ impl Phantom {
     /// Makes the scan and writes it; the paths written go to stdout.
     pub(super) fn run(&self) -> Result<()> {
         match &self.kind {
-            Kind::Head(head) => head.run(),
+            Kind::Head(body) => body.run(Region::Head),
+            Kind::Chest(body) => body.run(Region::Chest),
             Kind::Analytic(analytic) => analytic.run(),
             Kind::Rings(rings) => {
                 nrrd::write(&rings.nrrd, &synthetic::rings(rings.size)?, nrrd::Encoding::Gzip, &[])?;
@@ -95,23 +98,24 @@ impl Phantom {
     }
 }
 
-impl Head {
-    fn run(&self) -> Result<()> {
+impl Body {
+    fn run(&self, region: Region) -> Result<()> {
         if let Some(path) = &self.labels {
-            let segments = labels::segments(synthetic::head_structures());
-            nrrd::write(path, &synthetic::head_labels(self.size)?, nrrd::Encoding::Gzip, &segments)?;
+            let segments = labels::segments(region.structures());
+            nrrd::write(path, &synthetic::body_labels(region, self.size)?, nrrd::Encoding::Gzip, &segments)?;
             stdout::print(&path.display().to_string())?;
         }
         if self.nrrd.is_none() && self.dicom.is_none() {
             return Ok(());
         }
-        let volume = synthetic::head(&HeadPhantom { size: self.size, seed: self.seed, noise_hu: self.noise_hu })?;
+        let Body { size, seed, noise_hu, .. } = *self;
+        let volume = synthetic::body(&BodyPhantom { region, size, seed, noise_hu })?;
         if let Some(path) = &self.nrrd {
             nrrd::write(path, &volume, nrrd::Encoding::Gzip, &[])?;
             stdout::print(&path.display().to_string())?;
         }
         if let Some(folder) = &self.dicom {
-            let description = SeriesDescription { description: "pellucid head phantom".to_string(), seed: self.seed };
+            let description = SeriesDescription { description: format!("pellucid {} phantom", region.name()), seed };
             write_series(folder, &volume, &description)?;
             stdout::print(&folder.display().to_string())?;
         }

@@ -3,13 +3,13 @@
 use super::{Options, analytic, memory};
 use crate::error::Result;
 use crate::io::{self, Labels, Scan, dicom::SeriesChoice, dicom::SliceSpacing};
-use crate::spec::{MaskPhantom, PhantomHead, PhantomRings, PhantomSpec, Series, SlicesName, Spec, VolumeSource};
-use crate::synthetic::{self, HeadPhantom};
+use crate::spec::{MaskPhantom, PhantomBody, PhantomRings, PhantomSpec, Series, SlicesName, Spec, VolumeSource};
+use crate::synthetic::{self, BodyPhantom, Region};
 
 /// Reads or makes the volume of a spec, its values understood as the spec says.
 ///
 /// # Errors
-/// As [`io::load`], [`io::labels::read`] and [`synthetic::head`], and `Fault::Spec` for a formula that cannot be read or
+/// As [`io::load`], [`io::labels::read`] and [`synthetic::body`], and `Fault::Spec` for a formula that cannot be read or
 /// sampled; `Fault::Limit` for a scan that takes more memory than the options allow.
 pub fn load(spec: &Spec, options: &Options) -> Result<Scan> {
     let max_bytes = memory::limit_bytes(options);
@@ -17,7 +17,8 @@ pub fn load(spec: &Spec, options: &Options) -> Result<Scan> {
         VolumeSource::File { path, series, slices } => {
             io::load_spaced(&path, &choice(series), spacing(slices), max_bytes)?
         }
-        VolumeSource::Phantom(PhantomSpec::Head(head)) => phantom(&head, max_bytes)?,
+        VolumeSource::Phantom(PhantomSpec::Head(body)) => phantom(Region::Head, &body, max_bytes)?,
+        VolumeSource::Phantom(PhantomSpec::Chest(body)) => phantom(Region::Chest, &body, max_bytes)?,
         VolumeSource::Phantom(PhantomSpec::Rings(PhantomRings { size })) => {
             let size = size.map_or(64, |size| size as usize);
             let reading_bytes = 4 * (size as u64).pow(3);
@@ -44,8 +45,12 @@ fn labels(spec: &Spec, scan: &Scan) -> Result<Option<Labels>> {
     match (spec.labels_path(), mask.and_then(|mask| mask.phantom)) {
         (Some(path), _) => io::labels::read(&path, scan.volume.grid()).map(Some),
         (None, Some(MaskPhantom::Structures)) => {
-            let names = synthetic::head_structures().map(|(label, name)| (name.to_owned(), label));
-            Labels::new(synthetic::head_labels(scan.volume.grid().dims()[0])?, names).map(Some)
+            let region = match spec.volume_source() {
+                VolumeSource::Phantom(PhantomSpec::Chest(_)) => Region::Chest,
+                _ => Region::Head,
+            };
+            let names = region.structures().map(|(label, name)| (name.to_owned(), label));
+            Labels::new(synthetic::body_labels(region, scan.volume.grid().dims()[0])?, names).map(Some)
         }
         (None, None) => Ok(None),
     }
@@ -65,21 +70,21 @@ fn spacing(slices: Option<SlicesName>) -> SliceSpacing {
     }
 }
 
-fn phantom(head: &PhantomHead, max_bytes: Option<u64>) -> Result<Scan> {
-    let default = HeadPhantom::default();
-    let head = HeadPhantom {
-        size: head.size.map_or(default.size, |size| size as usize),
-        seed: head.seed.unwrap_or(default.seed),
+fn phantom(region: Region, body: &PhantomBody, max_bytes: Option<u64>) -> Result<Scan> {
+    let default = BodyPhantom::of(region);
+    let phantom = BodyPhantom {
+        size: body.size.map_or(default.size, |size| size as usize),
+        seed: body.seed.unwrap_or(default.seed),
         ..default
     };
     let facts = [
-        ("format", "synthetic head".to_string()),
-        ("seed", head.seed.to_string()),
-        ("noise", format!("{} HU", head.noise_hu)),
+        ("format", format!("synthetic {}", region.name())),
+        ("seed", phantom.seed.to_string()),
+        ("noise", format!("{} HU", phantom.noise_hu)),
     ];
     let facts = facts.map(|(label, text)| (label.to_string(), text)).to_vec();
-    let reading_bytes = head.making_bytes()?;
-    memory::refuse_beyond(max_bytes, reading_bytes, "volume.phantom.head.size")?;
-    let volume = synthetic::head(&head)?;
+    let reading_bytes = phantom.making_bytes()?;
+    memory::refuse_beyond(max_bytes, reading_bytes, &format!("volume.phantom.{}.size", region.name()))?;
+    let volume = synthetic::body(&phantom)?;
     Ok(Scan { volume, labels: None, facts, warnings: Vec::new(), files: Vec::new(), reading_bytes })
 }

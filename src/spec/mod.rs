@@ -48,7 +48,7 @@ pub use library::{BUILT_IN_PRESETS, LoadedPreset, built_in_preset, load_preset, 
 pub use per_axis::PerAxis;
 pub use pipeline::{
     AttenuationSpec, BackgroundSpec, Bits, ColorEncodingName, GradientSpec, ImageSpec, LayerSpec, NormaliseSpec,
-    PhantomHead, PhantomRings, PhantomSpec, Pipeline, Series, SlicesName, ValuesName, VolumeSpec,
+    PhantomBody, PhantomRings, PhantomSpec, Pipeline, Series, SlicesName, ValuesName, VolumeSpec,
 };
 pub use preset::{Preset, Tissue};
 pub use reference::{LabelRange, ReferenceTissues};

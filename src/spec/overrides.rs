@@ -4,11 +4,12 @@ use super::tree::{self, Key, Node, Origin, Value};
 use crate::error::{Error, Fault, Result};
 
 /// Keys that exclude each other, by their paths: a scan is one or the other, and so is a method.
-const ALTERNATIVES: [&[&str]; 5] = [
+const ALTERNATIVES: [&[&str]; 6] = [
     &["volume.source", "volume.phantom", "volume.analytic"],
     &["integrate.exact", "integrate.march", "integrate.reference", "integrate.auto"],
     &["integrate.auto.tolerance", "integrate.auto.budget_ms"],
     &["integrate.march.step_mm", "integrate.march.step_voxels"],
+    &["effects.mask.source", "effects.mask.phantom"],
     &["effects.fog.linear", "effects.fog.exp", "effects.fog.exp2"],
 ];
 

@@ -106,7 +106,9 @@ pub enum ColorEncodingName {
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum PhantomSpec {
     /// A head with skin, skull and brain.
-    Head(PhantomHead),
+    Head(PhantomBody),
+    /// A chest in the arterial phase, with ribs, lungs and heart.
+    Chest(PhantomBody),
     /// Three rings in changing colours, an RGBA volume.
     Rings(PhantomRings),
 }
@@ -121,10 +123,10 @@ pub struct PhantomRings {
     pub size: Option<u32>,
 }
 
-/// Settings of the head phantom.
+/// Settings of a phantom of the body.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PhantomHead {
+pub struct PhantomBody {
     /// Voxels along x and along y; 256 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 2, max = 1024))]

@@ -39,7 +39,7 @@ impl Tissue {
     }
 
     /// As a part of a structure, from 1.
-    pub(super) fn of_structure(mut self, structure: u8) -> Self {
+    fn of_structure(mut self, structure: u8) -> Self {
         self.structure = structure;
         self
     }
@@ -52,6 +52,14 @@ impl Tissue {
 }
 
 impl Scene {
+    /// The tissues of structures, in the order in which they are painted; the first structure has number 1.
+    pub(super) fn of_structures(skin: Solid, structures: impl IntoIterator<Item = Vec<Tissue>>, edge_mm: f32) -> Self {
+        let numbered = structures.into_iter().zip(1..);
+        let tissues =
+            numbered.flat_map(|(tissues, structure)| tissues.into_iter().map(move |t| t.of_structure(structure)));
+        Scene { skin, tissues: tissues.collect(), edge_mm }
+    }
+
     /// Value at `p`, HU.
     pub(super) fn hu(&self, p: Vec3) -> f32 {
         let mut skin_mm = None;
@@ -140,28 +148,26 @@ mod tests {
 
     #[test]
     fn a_scene_cut_down_to_a_ball_has_the_same_values_there() {
-        let head = anatomy::head(1.2);
-        let mut tissues_left = 0;
-        for index in 0..300 {
-            let spread = |stream: u64| 45.0 * bell(stream, index);
-            let ball = Ball { center: Vec3::new(spread(1), spread(2) - 10.0, spread(3)), radius_mm: 8.0 };
-            let near = head.near(ball);
-            tissues_left += near.tissues.len();
-            for step in 0..10_u64 {
-                let direction =
-                    Vec3::new(bell(4, index * 10 + step), bell(5, index), bell(6, step)).normalize_or_zero();
-                let p = ball.center + ball.radius_mm * (step as f32 / 10.0) * direction;
-                let (expected, found) = (head.hu(p), near.hu(p));
-                // Rounding differs where a solid is the whole of space in the ball.
-                assert!((expected - found).abs() < 0.1, "at {p}: found {found} HU, expected {expected}");
-                assert_eq!(near.structure(p), head.structure(p), "structure at {p}");
+        for (name, scene) in [("head", anatomy::head::head(1.2)), ("chest", anatomy::chest::chest(1.8))] {
+            let mut tissues_left = 0;
+            for index in 0..300 {
+                let spread = |stream: u64| 45.0 * bell(stream, index);
+                let ball = Ball { center: Vec3::new(spread(1), spread(2) - 10.0, spread(3)), radius_mm: 8.0 };
+                let near = scene.near(ball);
+                tissues_left += near.tissues.len();
+                for step in 0..10_u64 {
+                    let direction =
+                        Vec3::new(bell(4, index * 10 + step), bell(5, index), bell(6, step)).normalize_or_zero();
+                    let p = ball.center + ball.radius_mm * (step as f32 / 10.0) * direction;
+                    let (expected, found) = (scene.hu(p), near.hu(p));
+                    // Rounding differs where a solid is the whole of space in the ball.
+                    assert!((expected - found).abs() < 0.1, "{name} at {p}: found {found} HU, expected {expected}");
+                    assert_eq!(near.structure(p), scene.structure(p), "{name}: structure at {p}");
+                }
             }
+            let average = tissues_left as f32 / 300.0;
+            let all = scene.tissues.len();
+            assert!(average < 0.2 * all as f32, "{name}, tissues per ball: found {average} of {all}");
         }
-        let average = tissues_left as f32 / 300.0;
-        assert!(
-            average < 0.2 * head.tissues.len() as f32,
-            "tissues per ball: found {average} of {}",
-            head.tissues.len()
-        );
     }
 }

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::integrate::exact::{Precision, Traced, tracer};
 use crate::oracle::Oracle;
 use crate::scene::{Background, Camera, Effects, Light, Model, Projection, Scene, Shading};
-use crate::synthetic::{self, HeadPhantom};
+use crate::synthetic::{self, BodyPhantom, Region};
 use crate::transfer::shapes::{Shape, extinction_per_mm};
 use crate::transfer::{Optics, Term, TransferFunction};
 use crate::volume::Volume;
@@ -51,7 +51,7 @@ pub fn checks() -> Result<Vec<Check>> {
 
 /// The phantom.
 pub(super) fn head() -> Result<Volume> {
-    synthetic::head(&HeadPhantom { size: SIZE, ..HeadPhantom::default() })
+    synthetic::body(&BodyPhantom { size: SIZE, ..BodyPhantom::of(Region::Head) })
 }
 
 /// Its tissues by value alone.

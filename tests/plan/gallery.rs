@@ -20,6 +20,7 @@ fn pipelines() -> Vec<(String, Spec)> {
         let overrides = match spec.volume_source() {
             VolumeSource::File { .. } => continue,
             VolumeSource::Phantom(PhantomSpec::Head(_)) => vec!["volume.phantom={ head: { size: 32 } }".to_owned()],
+            VolumeSource::Phantom(PhantomSpec::Chest(_)) => vec!["volume.phantom={ chest: { size: 32 } }".to_owned()],
             VolumeSource::Phantom(_) | VolumeSource::Analytic(_) => Vec::new(),
         };
         let Document::Scan(spec) = load(&overrides) else { unreachable!("it was one before") };

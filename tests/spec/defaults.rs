@@ -1,6 +1,6 @@
 //! What is left out stays open in the spec, and forms that are kinder than YAML are understood.
 
-use pellucid::spec::{BackgroundSpec, Color, IntegrateSpec, LightSpec, PhantomHead, PhantomSpec, Series, VolumeSource};
+use pellucid::spec::{BackgroundSpec, Color, IntegrateSpec, LightSpec, PhantomBody, PhantomSpec, Series, VolumeSource};
 use std::path::{Path, PathBuf};
 
 use super::{SHORT, read};
@@ -8,7 +8,7 @@ use super::{SHORT, read};
 #[test]
 fn what_is_left_out_is_none() {
     let pipeline = read(SHORT).unwrap().pipeline;
-    assert_eq!(pipeline.volume.phantom, Some(PhantomSpec::Head(PhantomHead::default())), "a name takes its defaults");
+    assert_eq!(pipeline.volume.phantom, Some(PhantomSpec::Head(PhantomBody::default())), "a name takes its defaults");
     assert!(pipeline.camera.is_none() && pipeline.integrate.is_none() && pipeline.effects.is_none());
     assert!(pipeline.output.is_none() && pipeline.certify.is_none() && pipeline.image.is_none());
 }

@@ -77,3 +77,12 @@ fn paths_of_an_override_are_relative_to_the_working_directory() {
     assert_eq!(path(&[]), Path::new("pipelines/scan.nrrd"));
     assert_eq!(path(&["volume.source=scans/head.nrrd".to_owned()]), Path::new("scans/head.nrrd"));
 }
+
+#[test]
+fn labels_in_a_file_take_the_place_of_a_phantoms() {
+    let text = format!("{SHORT}effects: {{ mask: {{ phantom: structures, labels: {{ 1: hide }} }} }}\n");
+    let overrides = ["volume.source=scan.nrrd".to_owned(), "effects.mask.source=scan.seg.nrrd".to_owned()];
+    let spec = Spec::from_text(&text, Path::new("scene.yaml"), &overrides).expect("labels of the scan");
+    assert_eq!(spec.labels_path().as_deref(), Some(Path::new("scan.seg.nrrd")));
+    assert_eq!(spec.pipeline.effects.and_then(|effects| effects.mask).and_then(|mask| mask.phantom), None);
+}

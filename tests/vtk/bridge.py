@@ -72,10 +72,10 @@ class Pellucid:
         return json.loads(ran.stdout)["comparison"], ran.returncode == 0
 
 
-def render_vtk(folder, mapper, output, *arguments):
+def render_vtk(folder, mapper, output, *arguments, script="render.py"):
     """Runs the exported script in this Python; returns what it says of versions and settings, nothing if the mapper has no
     equal of the scene."""
-    command = [sys.executable, folder / "render.py", "--mapper", mapper, "--output", output, "--facts", *arguments]
+    command = [sys.executable, folder / script, "--mapper", mapper, "--output", output, "--facts", *arguments]
     ran = subprocess.run(list(map(str, command)), capture_output=True, text=True)
     if ran.returncode == UNSUPPORTED:
         return None

@@ -15,10 +15,13 @@ import tempfile
 import numpy as np
 
 from bridge import ROOT, Pellucid, render_vtk, scenes
+from rays import Shader, exact_rays
 
 SCRIPT = ROOT / "src/interchange/vtk/render.py"
 # Voxels along an axis of the boxes below, of 1 mm.
 N = 9
+# Positions that are exact, and as VTK's shader has them.
+KINDS = (np.float64, np.float32)
 failures = []
 
 
@@ -343,63 +346,23 @@ def rounding(pellucid):
             render_vtk(folder, "gpu", folder / "vtk.npy")
             vtk = np.load(folder / "vtk.npy")
             # Every fifth row and column.
-            height, width, _ = vtk.shape
-            off = []
-            for row in range(0, height, 5):
-                for column in range(0, width, 5):
-                    if vtk[row, column, 3] == 0:
-                        continue
-                    exact, added = (march(described, folder, column, row, kind) for kind in (np.float64, np.float32))
-                    off.append([255 * np.abs(ray - vtk[row, column]).max() for ray in (exact, added)])
+            pixels = np.array([pixel for pixel in np.argwhere(vtk[..., 3] > 0) if not (pixel % 5).any()])
+            off = [255 * np.abs(march(described, folder, pixels, kind) - vtk[*pixels.T]).max(-1) for kind in KINDS]
             pellucid.render(scene, None, folder / "pellucid.exr")
             worst = pellucid.compare(folder / "vtk.npy", folder / "pellucid.exr")[0]["worst"]
             column, row = worst["column"], worst["row"]
-            exact, added = (255 * np.abs(march(described, folder, column, row, kind) - vtk[row, column]).max() for kind in (np.float64, np.float32))
+            exact, added = (255 * np.abs(march(described, folder, [[row, column]], kind)[0] - vtk[row, column]).max() for kind in KINDS)
             what = f"{scene.name}: pellucid's worst pixel, {255 * worst['difference']:.3f}/255 from VTK; this ray is"
             holds(f"{what} {exact:.3f} by exact positions, {added:.4f} by positions added up in f32", added / exact, 0.0, 0.1)
-            exact, added = np.sqrt(np.mean(np.square(off), axis=0))
+            exact, added = np.sqrt(np.mean(np.square(off), axis=-1))
             holds(f"{scene.name}: RMS from VTK in 1/255, {exact:.4f} by exact positions, {added:.4f} by positions added up in f32", added / exact, 0.0, 0.5)
 
 
-def march(described, folder, column, row, kind):
-    """VTK's shader for one ray, unlit and 1D, with positions in a floating-point type."""
-    values = np.load(folder / "volume.npy").astype(np.float64)
+def march(described, folder, pixels, kind):
+    """VTK's shader for the rays of pixels, unlit and 1D, in numbers of a floating-point type."""
     table = np.load(folder / "transfer_function.npy")[0].astype(np.float64)
-    step, camera = described["step_mm"], described["camera"]
-    width, height = camera["size"]
-    forward, up = np.array(camera["forward"]), np.array(camera["up"])
-    slope = np.tan(np.radians(camera["fov_degrees_or_height_mm"]) / 2)
-    across = (2 * column + 1 - width) / height * slope * np.cross(forward, up)
-    direction = forward + across + (height - 2 * row - 1) / height * slope * up
-    direction /= np.linalg.norm(direction)
-    motion = np.array(described["motion"])
-    origin = motion[:, :3].T @ (np.array(camera["position_mm"]) - motion[:, 3])
-    direction = motion[:, :3].T @ direction
-    dims, spacing = np.array(values.shape[::-1]), np.array(described["spacing_mm"])
-    faces = np.stack([-origin / direction, ((dims - 1) * spacing - origin) / direction])
-    entry = faces.min(0).max()
-    # Texture coordinates: the middle of voxel i is at (i + 1/2)/n.
-    first = kind(((origin + entry * direction) / spacing + 0.5) / dims)
-    each = kind(step * direction / spacing / dims)
-    low, high = values.min(), values.max()
-    opacity = absorbed(table[:, 3], 1.0)
-    opacity = np.where(opacity > 1e-4, 1 - (1 - opacity) ** step, opacity)
-    color, alpha, position = np.zeros(3), 0.0, first + each
-    last, before = kind((dims - 0.5) / dims), kind(0.5 / dims)
-    while True:
-        index = np.clip(position.astype(np.float64) * dims - 0.5, 0, dims - 1.000001)
-        i, u = index.astype(int), index % 1
-        corner = values[i[2] : i[2] + 2, i[1] : i[1] + 2, i[0] : i[0] + 2]
-        value = np.einsum("kji,k,j,i", corner, [1 - u[2], u[2]], [1 - u[1], u[1]], [1 - u[0], u[0]])
-        at = np.clip((value - low) / (high - low) * len(table) - 0.5, 0, len(table) - 1)
-        a = np.interp(at, np.arange(len(table)), opacity)
-        c = [np.interp(at, np.arange(len(table)), table[:, channel]) for channel in range(3)]
-        color, alpha = color + (1 - alpha) * a * np.array(c), alpha + (1 - alpha) * a
-        position = position + each
-        outside = (np.maximum(each, 0) * (position - last) > 0) | (np.minimum(each, 0) * (position - before) > 0)
-        if alpha > 1 - 1 / 255 or outside.any():
-            break
-    return np.array([*color, alpha])
+    shader = Shader(described, np.load(folder / "volume.npy"), absorbed(table[:, 3], 1.0), table[:, :3])
+    return shader.march(exact_rays(described, shader.dims, pixels), kind)
 
 
 def main():

@@ -3,7 +3,8 @@
 //! Where it departs from [`Shading`]: the highlight is Phong's, `(r·v)^shininess` with the mirrored light `r`; there is no
 //! fade where the gradient vanishes; a colour brighter than 1 is cut off; and the gradient is a difference of values
 //! `n/(n − 1)` voxels before and after the sample along an axis of `n` voxels, clamped at the border, where central
-//! differences at the voxels are one voxel apart and one-sided.
+//! differences at the voxels are one voxel apart and one-sided. The one sample of a ray that is shorter than a step is held at
+//! the border, and its differences are taken there, where VTK's are around the place beyond (`tests/vtk/PRESETS.md`).
 //!
 //! Unless a headlight is the only light, VTK takes another path. There a headlight shines along the camera's axis; ambient
 //! light is left out (it is added without the colour of what it falls on, from lights that have none by default); on a

@@ -77,6 +77,7 @@ fn check_volume(check: Check<'_>, volume: &VolumeSpec) -> Result<()> {
     }
     let (path, size) = match &volume.phantom {
         Some(PhantomSpec::Head(head)) => ("volume.phantom.head.size", head.size),
+        Some(PhantomSpec::Chest(chest)) => ("volume.phantom.chest.size", chest.size),
         Some(PhantomSpec::Rings(rings)) => ("volume.phantom.rings.size", rings.size),
         None => ("volume.phantom", None),
     };

@@ -36,7 +36,8 @@ pub struct MaskSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MaskPhantom {
-    /// Anatomical structures, by their names: skin, muscle, brain, eyes, skull, jaw, spine, airways, teeth, vessels.
+    /// Anatomical structures, by their names. Head: skin, muscle, brain, eyes, skull, jaw, spine, airways, teeth, vessels. Chest:
+    /// skin, muscle, mediastinum, abdomen, liver, lungs, airways, vessels, heart, spine, ribs, sternum, shoulders.
     Structures,
 }
 
