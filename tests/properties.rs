@@ -212,3 +212,130 @@ proptest! {
         held_to_tolerance_and_bound(&volume, &scene, tolerance)?;
     }
 }
+
+/// A case that was found by chance: one voxel thick, in f32, a cell after the other.
+#[test]
+fn a_thin_volume_in_f32_keeps_its_bound() {
+    let knot = |&[value, extinction_per_mm, r, g, b]: &[f64; 5]| Knot {
+        value,
+        optics: Optics { extinction_per_mm, emission_per_mm: [r, g, b] },
+    };
+    let term = |knots: &[[f64; 5]], weight: &[[f64; 2]]| Term {
+        curve: Curve::new(knots.iter().map(knot).collect()).expect("a curve"),
+        weight: (!weight.is_empty()).then(|| Weight::new(weight.to_vec()).expect("a weight")),
+    };
+    let terms = vec![
+        term(
+            &[
+                [-549.721473646935, 0.0, 0.0, 0.0, 0.0],
+                [
+                    -549.721473646935,
+                    0.05801312593393325,
+                    0.03719533606731415,
+                    0.005409532686455706,
+                    0.010184347319739221,
+                ],
+                [8.397098558732564, 3.8954500804013446, 1.2631245188818228, 2.46443031522534, 0.005765019081531558],
+                [145.5412871018271, 0.0, 0.0, 0.0, 0.0],
+                [873.9687824184155, 0.10503761960508456, 0.09572315263500979, 0.03812455461671604, 0.04380754281867319],
+            ],
+            &[],
+        ),
+        term(
+            &[
+                [
+                    -701.5254694372657,
+                    0.11698756419358343,
+                    0.010814285742457143,
+                    0.04452269735538416,
+                    0.030046542033721157,
+                ],
+                [-430.5556648186626, 0.0, 0.0, 0.0, 0.0],
+                [-430.5556648186626, 0.0, 0.0, 0.0, 0.0],
+                [
+                    576.9362432813024,
+                    0.01923624912186856,
+                    0.009676237347110136,
+                    0.015259510227614969,
+                    0.0021136831967880363,
+                ],
+                [1431.7187438792153, 0.0, 0.0, 0.0, 0.0],
+            ],
+            &[],
+        ),
+        term(
+            &[
+                [
+                    -921.9489979610286,
+                    6.492951031578096,
+                    0.028608583274673693,
+                    0.01469450254407844,
+                    0.006313705180315675,
+                ],
+                [1129.5381876994245, 0.15485541587228419, 0.154350950952955, 0.11387865393413928, 0.12048627371616488],
+            ],
+            &[
+                [39.169890783935024, 0.21384938102108264],
+                [209.29624347722242, 0.8892680270390536],
+                [768.5075577410939, 0.44226104674017286],
+            ],
+        ),
+    ];
+    let affine = glam::DAffine3::from_cols(
+        DVec3::new(-0.9874724962732774, -0.3839278665671835, -1.364276898306578),
+        DVec3::new(0.1351639223978675, 0.5816846642255, 0.12634725269656288),
+        DVec3::new(-3.033443161327427, 0.31659757542887834, 1.702007231448349),
+        DVec3::new(-34.00174858297439, -231.28019879577528, 85.38417766602173),
+    );
+    let grid = Grid::new([5, 1, 3], affine).expect("a grid");
+    let volume =
+        crate::support::scenes::volume_i16(grid, vec![0, 599, 200, 0, 0, 200, -293, -152, 0, 0, 0, -795, 0, 0, 0]);
+    let transfer_function = TransferFunction::new([-1024.0, 3071.0], 1000.0, terms).expect("a function");
+    let lights = vec![
+        Light::Headlight { color: [0.8, 0.9, 1.0] },
+        Light::Directional {
+            towards: DVec3::new(-0.0967098245146496, -0.4916128785644807, 0.865427054968754),
+            color: [0.5, 0.3, 0.1],
+        },
+    ];
+    let shading = Shading {
+        ambient: 0.07445576737709506,
+        diffuse: 0.750501560212222,
+        specular: 0.5029468064536798,
+        shininess: 1.0,
+        two_sided: false,
+        soft_gradient_per_mm: 33.26345066209488,
+        lights,
+    };
+    let camera = camera(
+        volume.grid(),
+        DVec3::new(-0.16240134826386343, -0.11015133486212092, -0.9805572321441377),
+        3.019746891104878,
+        false,
+    );
+    let scene = Scene {
+        model: Model::Light,
+        transfer_function,
+        shading: Some(shading),
+        camera,
+        background: Background::Transparent,
+        effects: Effects::default(),
+    };
+    let oracle = Oracle::new(&volume, &scene);
+    for column in 0..RAYS {
+        let ray = scene.camera.pixel_ray(column, 0);
+        for tolerance in [1e-2, 1e-3, 1e-4] {
+            for precision in [Precision::Single, Precision::Double] {
+                let t = tracer(&volume, &scene, tolerance, precision);
+                let f = t.trace(&ray);
+                println!(
+                    "{column} {tolerance} {precision:?} {} {:?} oracle {:?}",
+                    t.kernel(),
+                    f.map(|f| (f.radiance, f.transmittance, f.bound, f.pieces)),
+                    oracle.radiance(&ray)
+                );
+            }
+        }
+    }
+    held_to_tolerance_and_bound(&volume, &scene, 1e-3).unwrap_or_else(|error| panic!("{error}"));
+}

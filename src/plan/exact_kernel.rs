@@ -39,6 +39,8 @@ pub struct Stored<'a> {
     rescale: Rescale,
     has_even_slices: bool,
     has_colors: bool,
+    /// Classes of voxels, without which a mask masks nothing.
+    has_classes: bool,
 }
 
 impl<'a> From<&'a Volume> for Stored<'a> {
@@ -48,6 +50,7 @@ impl<'a> From<&'a Volume> for Stored<'a> {
             rescale: volume.rescale(),
             has_even_slices: volume.slices().is_none(),
             has_colors: volume.samples().are_rgba(),
+            has_classes: volume.classes().is_some(),
         }
     }
 }
@@ -59,6 +62,8 @@ impl<'a> From<&'a VolumeInfo> for Stored<'a> {
             rescale: volume.rescale,
             has_even_slices: volume.uneven_slices_mm.is_none(),
             has_colors: volume.storage.rgba_encoding().is_some(),
+            // By the time a scene with a mask is rendered.
+            has_classes: true,
         }
     }
 }
@@ -68,7 +73,8 @@ impl ExactKernel {
     pub fn of<'a>(scene: &Scene, volume: impl Into<Stored<'a>>, settings: &Exact) -> Self {
         let (volume, effects) = (volume.into(), &scene.effects);
         let of_values = !volume.has_colors && effects.classify == ClassifyAt::Samples;
-        let plain = of_values && scene.model == Model::Light && !effects.change_light() && effects.mask.is_none();
+        let is_masked = volume.has_classes && effects.mask.is_some();
+        let plain = of_values && scene.model == Model::Light && !effects.change_light() && !is_masked;
         if !plain || is_too_narrow(&scene.transfer_function, volume.rescale, settings.tolerance) {
             return ExactKernel::Double;
         }

@@ -20,6 +20,7 @@ mod nodes;
 mod pieces;
 mod queue;
 mod shaded;
+mod shares;
 mod voxels;
 mod walk;
 

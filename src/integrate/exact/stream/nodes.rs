@@ -2,35 +2,28 @@
 //!
 //! The integral of a piece without shading, `∫ q e^{−τ}`, has a proven error. Gauss's rule with five nodes splits it: the share
 //! of node `i` is its weight times `q(u_i) e^{−τ(u_i)}`, over the sum of all. Each share is then shaded as the gradient at
-//! its node asks for, so that where the shading is the same along a piece nothing is lost. What is lost elsewhere grows with
+//! its node asks for (`shares`), so that where the shading is the same along a piece nothing is lost. What is lost elsewhere grows with
 //! how far the normal turns between the nodes; it has either sign, and nothing to do with what is lost in other pieces. So
 //! standard deviations are estimated, and their squares add up along a ray.
 
-use super::light::{Finish, LIGHTS, Lighting, Lights, dot, power};
-use crate::integrate::exact::linear::Linear;
-use crate::integrate::exact::piece::{Integral, Optics};
-use crate::math::bernstein::{self, Cubic, sum};
+use super::light::{LIGHTS, Lighting, Lights, dot, power};
+use crate::math::bernstein::Cubic;
 use crate::math::each;
 use crate::simd::{Lanes, Mask};
 
 /// Nodes of a piece.
-const NODES: usize = 5;
+pub(super) const NODES: usize = 5;
 
 /// Gauss's nodes in `[0, 1]`, and their weights.
-const PLACES: [f64; NODES] =
+pub(super) const PLACES: [f64; NODES] =
     [0.046_910_077_030_668, 0.230_765_344_947_158_5, 0.5, 0.769_234_655_052_841_5, 0.953_089_922_969_332];
-const WEIGHTS: [f64; NODES] = [
+pub(super) const WEIGHTS: [f64; NODES] = [
     0.118_463_442_528_094_54,
     0.239_314_335_249_683_2,
     0.284_444_444_444_444_4,
     0.239_314_335_249_683_2,
     0.118_463_442_528_094_54,
 ];
-
-/// Of a medium with the optical depth `τ`, the rule finds the mean of the places that are seen less than `c τ⁴` of a piece too
-/// far, and never more than its first node lies behind the front; `c` holds the range of the nodes against that of the piece.
-const SHIFT_PER_DEPTH: f64 = 1e-6;
-const LARGEST_SHIFT: f64 = 0.06;
 
 /// Standard deviations of what the rule misses, measured on cells of noisy lattices, to which the tests below hold them. With the
 /// turn of the normal from node to node, `s = Σ 1 − cos`, Lambert's term misses `a s + b s²`, and more where a light changes sides,
@@ -56,11 +49,11 @@ pub(super) fn powers<L: Lanes>(b: &Cubic<L>) -> Powers<L> {
 /// The light on a piece, at its nodes.
 #[derive(Clone, Copy)]
 pub(super) struct AtNodes<'l, L> {
-    lighting: &'l Lighting,
+    pub(super) lighting: &'l Lighting,
     /// The diffuse term of each light without its colour, by node.
-    lambert: [[L; NODES]; LIGHTS],
+    pub(super) lambert: [[L; NODES]; LIGHTS],
     /// The specular one.
-    gloss: [[L; NODES]; LIGHTS],
+    pub(super) gloss: [[L; NODES]; LIGHTS],
     /// Standard deviation of what the nodes miss, for a piece that absorbs all light and for colours up to 1.
     pub(super) deviation: L,
 }
@@ -141,234 +134,18 @@ impl Lighting {
     }
 }
 
-fn brightest(color: &[f32; 3]) -> f64 {
+pub(super) fn brightest(color: &[f32; 3]) -> f64 {
     f64::from(color[0].max(color[1]).max(color[2]))
-}
-
-impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
-    #[inline(always)]
-    fn finish<const N: usize, const M: usize>(&self, optics: &Optics<L, N>, length_mm: L) -> Integral<L> {
-        let number = L::from_f64;
-        let unlit = optics.integrate(length_mm);
-        let mut transmitted = [L::ONE; NODES];
-        for i in 0..NODES {
-            let mut depth = L::ZERO;
-            for k in 0..N {
-                depth += number(table::<N>().integrals[i][k]) * optics.extinction[k];
-            }
-            transmitted[i] = number(WEIGHTS[i]) * (L::ONE - (length_mm * depth).absorbed());
-        }
-        let absorbed = shares(&optics.extinction, &transmitted, unlit.absorbed);
-        let mut radiance = [L::ZERO; 3];
-        for c in 0..3 {
-            let emitted = shares(&optics.emission[c], &transmitted, unlit.radiance[c]);
-            radiance[c] = number(self.lighting.ambient) * unlit.radiance[c];
-            for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
-                radiance[c] += number(f64::from(color[c])) * dot_nodes(&emitted, &self.lambert[n]);
-            }
-        }
-        let brightest_unlit = unlit.radiance[0].max(unlit.radiance[1]).max(unlit.radiance[2]);
-        let mut drift = L::ZERO;
-        for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
-            if self.lighting.specular != 0.0 {
-                let gloss = dot_nodes(&absorbed, &self.gloss[n]);
-                for c in 0..3 {
-                    radiance[c] += number(f64::from(color[c])) * gloss;
-                }
-            }
-            let varies = brightest_unlit * range(&self.lambert[n]) + unlit.absorbed * range(&self.gloss[n]);
-            drift += number(brightest(color)) * varies;
-        }
-        let depth = length_mm * (number(1.0 / N as f64) * sum(&optics.extinction));
-        Integral { radiance, error: self.error(&unlit, depth, drift), ..unlit }
-    }
-
-    /// As [`finish`](Self::finish). What is shared out to node `i` is `α t_i + β t_i d_i`, with the same `t_i` and `d_i` for all channels and
-    /// for extinction, so that sums over nodes are made once: of `t_i` and of `t_i d_i`, and of both with each light.
-    #[inline(always)]
-    fn finish_linear(&self, linear: &Linear<L>, length_mm: L) -> Integral<L> {
-        let number = L::from_f64;
-        let unlit = linear.integrate(length_mm);
-        let (mut seen, mut seen_distance) = ([L::ZERO; NODES], [L::ZERO; NODES]);
-        for i in 0..NODES {
-            let (mut distance, mut so_far) = (L::ZERO, L::ZERO);
-            for k in 0..4 {
-                distance += number(table::<4>().values[i][k]) * linear.distance[k];
-                so_far += number(table::<4>().integrals[i][k]) * linear.distance[k];
-            }
-            let depth = linear.low[3] * number(PLACES[i]) + linear.slope[3] * so_far;
-            seen[i] = number(WEIGHTS[i]) * (L::ONE - (length_mm * depth).absorbed());
-            seen_distance[i] = seen[i] * distance;
-        }
-        let (all, all_distance) = (sum(&seen), sum(&seen_distance));
-        // Of each component, one over what is shared out; 0 for none.
-        let per_total: [L; 4] = each(
-            #[inline(always)]
-            |c| {
-                let total = linear.low[c] * all + linear.slope[c] * all_distance;
-                L::select(L::ZERO.lt(total), L::ONE / total, L::ZERO)
-            },
-        );
-        let mean = Mean { linear, seen, seen_distance, per_total };
-        let mut radiance = unlit.radiance;
-        let mut factors = [number(self.lighting.ambient); 3];
-        let mut drift = L::ZERO;
-        let brightest_unlit = unlit.radiance[0].max(unlit.radiance[1]).max(unlit.radiance[2]);
-        let mut shine = [L::ZERO; 3];
-        for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
-            let sums = mean.sums(&self.lambert[n]);
-            for c in 0..3 {
-                factors[c] += number(f64::from(color[c])) * mean.of(c, &sums, self.lighting.diffuse);
-            }
-            let mut varies = brightest_unlit * range(&self.lambert[n]);
-            if self.lighting.specular != 0.0 {
-                let gloss = unlit.absorbed * mean.of(3, &mean.sums(&self.gloss[n]), self.lighting.specular);
-                for c in 0..3 {
-                    shine[c] += number(f64::from(color[c])) * gloss;
-                }
-                varies += unlit.absorbed * range(&self.gloss[n]);
-            }
-            drift += number(brightest(color)) * varies;
-        }
-        for c in 0..3 {
-            radiance[c] = factors[c] * radiance[c] + shine[c];
-        }
-        let depth = length_mm * linear.at(3, linear.mean_distance());
-        Integral { radiance, error: self.error(&unlit, depth, drift), ..unlit }
-    }
-}
-
-impl<L: Lanes> AtNodes<'_, L> {
-    /// The error of a shaded piece that is so deep, by what its unshaded integral may miss, and by how much its light may change if
-    /// seen elsewhere.
-    #[inline(always)]
-    fn error(&self, unlit: &Integral<L>, depth: L, drift: L) -> L {
-        // Where little gets through, the nodes lie behind what is seen.
-        let square = depth * depth;
-        let shift = (L::from_f64(SHIFT_PER_DEPTH) * square * square).min(L::from_f64(LARGEST_SHIFT));
-        L::from_f64(self.lighting.largest_reflected) * unlit.error + shift * drift
-    }
-}
-
-/// Means of factors at nodes over what is shared out to them.
-struct Mean<'p, L> {
-    linear: &'p Linear<L>,
-    seen: [L; NODES],
-    seen_distance: [L; NODES],
-    per_total: [L; 4],
-}
-
-impl<L: Lanes> Mean<'_, L> {
-    /// Sums of a factor over the nodes.
-    #[inline(always)]
-    fn sums(&self, at: &[L; NODES]) -> [L; 2] {
-        [dot_nodes(&self.seen, at), dot_nodes(&self.seen_distance, at)]
-    }
-
-    /// The mean of a factor of these sums over a component. What is next to nothing may round to anything, but not to more than there
-    /// is.
-    #[inline(always)]
-    fn of(&self, component: usize, [sum, sum_distance]: &[L; 2], largest: f64) -> L {
-        let total = self.linear.low[component] * *sum + self.linear.slope[component] * *sum_distance;
-        (total * self.per_total[component]).max(L::ZERO).min(L::from_f64(largest))
-    }
-}
-
-/// How much a factor differs between nodes.
-#[inline(always)]
-fn range<L: Lanes>(at: &[L; NODES]) -> L {
-    let [low, high] = bernstein::range(at);
-    high - low
-}
-
-#[inline(always)]
-fn dot_nodes<L: Lanes>(a: &[L; NODES], b: &[L; NODES]) -> L {
-    let mut sum = a[0] * b[0];
-    for i in 1..NODES {
-        sum += a[i] * b[i];
-    }
-    sum
-}
-
-/// What is shared out to the nodes: by the values of a polynomial there, times what is transmitted.
-#[inline(always)]
-fn shares<L: Lanes, const N: usize>(polynomial: &[L; N], transmitted: &[L; NODES], all: L) -> [L; NODES] {
-    let mut found = [L::ZERO; NODES];
-    for i in 0..NODES {
-        for k in 0..N {
-            found[i] += L::from_f64(table::<N>().values[i][k]) * polynomial[k];
-        }
-        found[i] = transmitted[i] * found[i];
-    }
-    let total = sum(&found);
-    let scale = L::select(L::ZERO.lt(total), all / total, L::ZERO);
-    for share in &mut found {
-        *share = scale * *share;
-    }
-    found
-}
-
-/// Bernstein polynomials at the nodes, and their integrals up to the nodes.
-struct NodeTable<const N: usize> {
-    values: [[f64; N]; NODES],
-    integrals: [[f64; N]; NODES],
-}
-
-#[inline(always)]
-const fn table<const N: usize>() -> &'static NodeTable<N> {
-    const { &NodeTable::<N>::new() }
-}
-
-impl<const N: usize> NodeTable<N> {
-    const fn new() -> Self {
-        let mut found = NodeTable { values: [[0.0; N]; NODES], integrals: [[0.0; N]; NODES] };
-        let mut i = 0;
-        while i < NODES {
-            // Raised from degree to degree: B(k, n) = (1 − u) B(k, n−1) + u B(k−1, n−1).
-            let u = PLACES[i];
-            let mut b = [0.0; 16];
-            b[0] = 1.0;
-            let mut degree = 0;
-            while degree < N {
-                if degree == N - 1 {
-                    let mut k = 0;
-                    while k < N {
-                        found.values[i][k] = b[k];
-                        k += 1;
-                    }
-                }
-                let mut k = degree + 1;
-                while k > 0 {
-                    b[k] = (1.0 - u) * b[k] + u * b[k - 1];
-                    k -= 1;
-                }
-                b[0] *= 1.0 - u;
-                degree += 1;
-            }
-            // ∫₀^u B(k, n) = Σ_{j > k} B(j, n+1) / (n + 1).
-            let mut k = 0;
-            while k < N {
-                let mut sum = 0.0;
-                let mut j = k + 1;
-                while j <= N {
-                    sum += b[j];
-                    j += 1;
-                }
-                found.integrals[i][k] = sum / N as f64;
-                k += 1;
-            }
-            i += 1;
-        }
-        found
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
 
+    use super::super::light::Finish;
     use super::*;
-    use crate::integrate::exact::linear::drift;
+    use crate::integrate::exact::linear::{Linear, drift};
+    use crate::integrate::exact::piece::{Integral, Optics};
     use crate::math::bernstein::{trilinear_along, value};
     use crate::scene::{Light, Shading};
 
@@ -509,22 +286,6 @@ mod tests {
                 let what = format!("{found:?}, expected {expected:?}");
                 assert!(!differs && !apart(found.absorbed, expected.absorbed), "{what}");
                 assert!((found.error - expected.error).abs() <= 1e-4 * expected.error + 1e-6, "{what}");
-            }
-        }
-    }
-
-    #[test]
-    fn bernstein_polynomials_are_tabulated() {
-        for i in 0..NODES {
-            for (k, &found) in table::<4>().values[i].iter().enumerate() {
-                let mut one = [0.0; 4];
-                one[k] = 1.0;
-                let expected = value(&one, PLACES[i]);
-                assert!((found - expected).abs() < 1e-15, "B{k} at node {i}: {found}, expected {expected}");
-                let (found, steps) = (table::<4>().integrals[i][k], 10_000);
-                let at = |s: usize| value(&one, (s as f64 + 0.5) / steps as f64 * PLACES[i]);
-                let expected = (0..steps).map(at).sum::<f64>() / steps as f64 * PLACES[i];
-                assert!((found - expected).abs() < 1e-8, "∫B{k} to node {i}: {found}, expected {expected}");
             }
         }
     }
