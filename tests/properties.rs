@@ -213,9 +213,9 @@ proptest! {
     }
 }
 
-/// A case that was found by chance: one voxel thick, in f32, a cell after the other.
+/// Found by chance: a highlight of exponent 1 has a kink where its normal is across the half vector, which no cut knows of.
 #[test]
-fn a_thin_volume_in_f32_keeps_its_bound() {
+fn a_highlight_of_exponent_1_keeps_its_bound() {
     let knot = |&[value, extinction_per_mm, r, g, b]: &[f64; 5]| Knot {
         value,
         optics: Optics { extinction_per_mm, emission_per_mm: [r, g, b] },
@@ -321,21 +321,5 @@ fn a_thin_volume_in_f32_keeps_its_bound() {
         background: Background::Transparent,
         effects: Effects::default(),
     };
-    let oracle = Oracle::new(&volume, &scene);
-    for column in 0..RAYS {
-        let ray = scene.camera.pixel_ray(column, 0);
-        for tolerance in [1e-2, 1e-3, 1e-4] {
-            for precision in [Precision::Single, Precision::Double] {
-                let t = tracer(&volume, &scene, tolerance, precision);
-                let f = t.trace(&ray);
-                println!(
-                    "{column} {tolerance} {precision:?} {} {:?} oracle {:?}",
-                    t.kernel(),
-                    f.map(|f| (f.radiance, f.transmittance, f.bound, f.pieces)),
-                    oracle.radiance(&ray)
-                );
-            }
-        }
-    }
     held_to_tolerance_and_bound(&volume, &scene, 1e-3).unwrap_or_else(|error| panic!("{error}"));
 }

@@ -174,9 +174,9 @@ impl<R: Real> Lit<R> {
         };
         if facing || self.two_sided {
             let cosines = |v: &[R; 3]| [0, 3].map(|k| bounds.cosine(&at(k), v, self.two_sided));
-            terms.lambert_error = bounds.of_power(cosines(&light.towards), R::ONE);
+            terms.lambert_error = bounds.of_power(cosines(&light.towards), R::ONE, true);
             if self.specular > R::ZERO {
-                terms.gloss_error = bounds.of_power(cosines(&light.half), self.shininess);
+                terms.gloss_error = bounds.of_power(cosines(&light.half), self.shininess, false);
             }
         }
         terms
@@ -312,9 +312,10 @@ impl<R: Real> Variation<R> {
         if two_sided { x.abs() } else { x.max(R::ZERO) }
     }
 
-    /// Largest distance of `w x^p` from the line through its ends, given the cosine `x` at both ends.
+    /// Largest distance of `w x^p` from the line through its ends, given the cosine `x` at both ends; `is_cut` where pieces end at
+    /// the kink that `x` has at 0.
     #[inline]
-    fn of_power(&self, cosines: [R; 2], p: R) -> R {
+    fn of_power(&self, cosines: [R; 2], p: R, is_cut: bool) -> R {
         let number = R::from_f64;
         let (low, high) = (cosines[0].min(cosines[1]), cosines[0].max(cosines[1]));
         if !self.smooth {
@@ -328,9 +329,10 @@ impl<R: Real> Variation<R> {
         let speed = self.turn * (R::ONE - low * low).max(R::ZERO).sqrt();
         let [w0, w1, w2] = self.fade;
         let two = number(2.0);
-        // One power serves the function and its derivatives; x^p has no bounded second derivative at 0 for 1 < p < 2.
+        // One power serves the function and its derivatives; x^p has no bounded second derivative at 0 for 1 < p < 2, nor for p = 1
+        // where it is not cut.
         let (f0, f1, f2) = if p == R::ONE {
-            (high, R::ONE, Some(R::ZERO))
+            (high, R::ONE, (is_cut || low > R::ZERO).then_some(R::ZERO))
         } else if p < two {
             let power = high.powf(p - R::ONE);
             (power * high, p * power, None)
@@ -352,12 +354,12 @@ mod tests {
     use super::*;
     use crate::scene::Light;
 
-    fn shading(two_sided: bool, soft: f64) -> Shading {
+    fn shading(two_sided: bool, soft: f64, shininess: f64) -> Shading {
         Shading {
             ambient: 0.1,
             diffuse: 0.7,
             specular: 0.3,
-            shininess: if soft > 30.0 { 20.0 } else { 1.5 },
+            shininess: if soft > 30.0 { 20.0 } else { shininess },
             two_sided,
             soft_gradient_per_mm: soft,
             lights: vec![
@@ -378,7 +380,7 @@ mod tests {
         let mut seed = 7;
         let mut tightest = 0.0f64;
         for case in 0..4000 {
-            let definition = shading(case % 2 == 0, [0.0, 20.0, 40.0][case % 3]);
+            let definition = shading(case % 2 == 0, [0.0, 20.0, 40.0][case % 3], [1.0, 1.5, 2.0][case / 6 % 3]);
             let direction = DVec3::new(random(&mut seed), random(&mut seed), random(&mut seed)).normalize();
             let lit = Lit::<f64>::new(&definition, direction, 1.0);
             // From nearly straight to wild.
