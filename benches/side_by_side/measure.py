@@ -35,6 +35,9 @@ class SceneResult:
     peak_memory_bytes: dict = field(default_factory=dict)
     setup_seconds: dict = field(default_factory=dict)
     ns_per_sample: dict = field(default_factory=dict)
+    rays_per_second: dict = field(default_factory=dict)
+    # Pieces of cells, or samples.
+    samples_per_second: dict = field(default_factory=dict)
     vtk_share_over: float = 0.0
     vtk_version: str = ""
     raw_bytes: int = 0
@@ -77,7 +80,10 @@ def timed(pellucid, pipeline, integrate, name, result):
     result.peak_memory_bytes[name] = max(sidecar["peak_memory_bytes"], result.peak_memory_bytes.get(name, 0))
     result.setup_seconds[name] = sidecar["setup_seconds"]
     frame = sidecar["frame_seconds"]
-    result.ns_per_sample.setdefault(name, 1e9 * frame * sidecar["threads"] / sidecar["method"]["samples"])
+    rays, samples = sidecar["method"]["rays"], sidecar["method"]["samples"]
+    result.ns_per_sample.setdefault(name, 1e9 * frame * sidecar["threads"] / samples)
+    result.rays_per_second.setdefault(name, rays / frame)
+    result.samples_per_second.setdefault(name, samples / frame)
     return frame
 
 

@@ -54,13 +54,16 @@ def scenes_table(results):
 
 def resources_table(results):
     head = ["scene", "raw volume, MB", "peak memory, MB: exact", "march", "VTK and Python", "set-up, s: exact", "march",
-            "VTK", "ns per piece, exact", "ns per sample, march"]
+            "VTK", "ns per piece, exact", "ns per sample, march", "million rays/s: exact", "march",
+            "million pieces/s, exact", "million samples/s, march"]
     rows = [
         [
             f"{r.name}{', lit' if r.lit else ''}", f"{r.raw_bytes / MB:.0f}",
             *(f"{r.peak_memory_bytes[name] / MB:.0f}" for name in ("exact", "march", "vtk")),
             *(seconds(r.setup_seconds[name]) for name in ("exact", "march", "vtk")),
             *(f"{r.ns_per_sample[name]:.0f}" for name in ("exact", "march")),
+            *(f"{r.rays_per_second[name] / 1e6:.1f}" for name in ("exact", "march")),
+            *(f"{r.samples_per_second[name] / 1e6:.0f}" for name in ("exact", "march")),
         ]
         for r in results
     ]
