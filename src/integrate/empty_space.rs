@@ -40,6 +40,7 @@ impl EmptySpace {
         classifier: &C,
     ) -> Self {
         let active: Vec<bool> = (0..values.ranges().len())
+            .into_par_iter()
             .map(|b| {
                 let magnitude = magnitudes.map_or([0.0; 2], |m| m.ranges()[b]);
                 !classifier.is_empty_in(b, widened(values.ranges()[b]), widened(magnitude))
@@ -49,8 +50,8 @@ impl EmptySpace {
     }
 
     /// The blocks of which `is_active` holds, given the range of their values with what rounding makes of it.
-    pub(super) fn by_values(values: &Macrocells, is_active: impl Fn([f32; 2]) -> bool) -> Self {
-        let active: Vec<bool> = values.ranges().iter().map(|&range| is_active(widened(range))).collect();
+    pub(super) fn by_values(values: &Macrocells, is_active: impl Fn([f32; 2]) -> bool + Sync) -> Self {
+        let active: Vec<bool> = values.ranges().par_iter().map(|&range| is_active(widened(range))).collect();
         EmptySpace::from_active(values.blocks(), Macrocells::LOG2_CELLS, &active)
     }
 
@@ -70,7 +71,8 @@ impl EmptySpace {
     }
 
     fn from_active(blocks: [usize; 3], log2_cells: u32, active: &[bool]) -> Self {
-        let (to_active, to_empty) = (distances(blocks, active, true), distances(blocks, active, false));
+        let (to_active, to_empty) =
+            rayon::join(|| distances(blocks, active, true), || distances(blocks, active, false));
         let beside = to_active.into_iter().zip(to_empty);
         let alike = beside.map(|(to_active, to_empty)| match to_active {
             0 => ACTIVE + to_empty.min(ACTIVE - 1),
@@ -168,12 +170,21 @@ impl<'d> Rows<'d> {
         lower(row, &self.beside);
         lower(row, across[0]);
         lower(&mut row[1..], across[1]);
-        let mut before = u8::MAX;
-        let mut next = |d: &mut u8| {
-            *d = (*d).min(before.saturating_add(1));
-            before = *d;
-        };
-        if direction > 0 { row.iter_mut().for_each(&mut next) } else { row.iter_mut().rev().for_each(&mut next) }
+        // Along the row, from ever further away: distances of 255 and more are all the same.
+        let mut away = 1;
+        while away < row.len().min(256) {
+            self.beside.copy_from_slice(row);
+            let (near, far) = (row.len() - away, away as u8);
+            let (lowered, from) = if direction > 0 {
+                (&mut row[away..], &self.beside[..near])
+            } else {
+                (&mut row[..near], &self.beside[away..])
+            };
+            for (d, &n) in lowered.iter_mut().zip(from) {
+                *d = (*d).min(n.saturating_add(far));
+            }
+            away *= 2;
+        }
     }
 }
 

@@ -46,17 +46,20 @@ impl Occupancy {
         let [nx, ny, nz] = self.blocks;
         let side = 1 << log2_blocks;
         let span = |from: usize, n: usize| from..(from + side).min(n);
-        for z in (0..nz).step_by(side) {
+        self.empty[..nx * ny * nz].par_chunks_mut(nx * ny * side).for_each(|slab| {
             for y in (0..ny).step_by(side) {
                 for x in (0..nx).step_by(side) {
-                    let rows = || span(z, nz).flat_map(move |k| span(y, ny).map(move |j| nx * (j + ny * k)));
+                    let rows = |slab: &[u8]| {
+                        let deep = slab.len() / (nx * ny);
+                        (0..deep).flat_map(move |k| span(y, ny).map(move |j| nx * (j + ny * k)))
+                    };
                     // What lies beyond the lattice is empty, too.
-                    if rows().all(|row| span(x, nx).all(|i| self.empty[row + i] + 1 >= log2_cells)) {
-                        rows().for_each(|row| self.empty[row..][span(x, nx)].fill(log2_cells));
+                    if rows(slab).all(|row| span(x, nx).all(|i| slab[row + i] + 1 >= log2_cells)) {
+                        rows(slab).for_each(|row| slab[row..][span(x, nx)].fill(log2_cells));
                     }
                 }
             }
-        }
+        });
     }
 
     /// The cubes of cells around cells in which nothing shows: the base-2 logarithm of their cells per axis, 0 where
