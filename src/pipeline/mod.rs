@@ -139,7 +139,7 @@ impl Shared<'_> {
         let made = Made {
             labels: self.labels.clone(),
             choice: self.choice.clone(),
-            clipped: self.clipped.clone(),
+            clipped: self.clipped,
             rendered: &rendered,
             pixels_sha256,
             certificate,

@@ -121,7 +121,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn of_view(&self, spec: &Spec, volume: &VolumeInfo, output: Option<&Path>, view: usize) -> Result<Self> {
-        Plan::with((spec, view), volume, output, self.method.clone(), self.chosen.clone())
+        Plan::with((spec, view), volume, output, self.method, self.chosen.clone())
     }
 
     fn with(
