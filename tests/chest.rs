@@ -6,8 +6,9 @@ use std::sync::LazyLock;
 use glam::DVec3;
 use pellucid::Volume;
 use pellucid::synthetic::{BodyPhantom, Region, body, body_labels};
-use pellucid::volume::Samples;
 use sha2::{Digest, Sha256};
+
+use crate::support::scenes::{stored, value_at};
 
 /// The phantom of the default size, without noise.
 static CHEST: LazyLock<Volume> = LazyLock::new(|| make(256, 1, 0.0));
@@ -16,19 +17,6 @@ static LABELS: LazyLock<Volume> = LazyLock::new(|| body_labels(Region::Chest, 25
 
 fn make(size: usize, seed: u64, noise_hu: f64) -> Volume {
     body(&BodyPhantom { region: Region::Chest, size, seed, noise_hu }).expect("the phantom can be made")
-}
-
-fn stored(volume: &Volume) -> &[i16] {
-    match volume.samples() {
-        Samples::I16(voxels) => voxels,
-        _ => panic!("the phantom is stored in 16 bits"),
-    }
-}
-
-/// Value of the voxel nearest to a point in LPS mm.
-fn value_at(volume: &Volume, [x, y, z]: [f64; 3]) -> f64 {
-    let index = volume.grid().lps_mm_to_index().transform_point3(DVec3::new(x, y, z)).round();
-    volume.value([index.x as usize, index.y as usize, index.z as usize])
 }
 
 /// The name of the structure at a point; empty outside of the body.

@@ -5,28 +5,17 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 use pellucid::synthetic::{BodyPhantom, Region, body, body_labels};
-use pellucid::volume::{Quantity, Samples};
+use pellucid::volume::Quantity;
 use pellucid::{Fault, Volume};
 use sha2::{Digest, Sha256};
+
+use crate::support::scenes::{stored, value_at};
 
 /// The phantom of the default size, without noise.
 static HEAD: LazyLock<Volume> = LazyLock::new(|| make(256, 1, 0.0));
 
 fn make(size: usize, seed: u64, noise_hu: f64) -> Volume {
     body(&BodyPhantom { region: Region::Head, size, seed, noise_hu }).expect("the phantom can be made")
-}
-
-fn stored(volume: &Volume) -> &[i16] {
-    match volume.samples() {
-        Samples::I16(voxels) => voxels,
-        _ => panic!("the phantom is stored in 16 bits"),
-    }
-}
-
-/// Value of the voxel nearest to a point, HU.
-fn hu_at(volume: &Volume, [x, y, z]: [f64; 3]) -> f64 {
-    let index = volume.grid().lps_mm_to_index().transform_point3(DVec3::new(x, y, z)).round();
-    volume.value([index.x as usize, index.y as usize, index.z as usize])
 }
 
 #[test]
@@ -68,7 +57,7 @@ fn tissues_are_where_the_atlas_has_them() {
     ];
     let mut wrong = String::new();
     for (name, point, [low, high]) in points {
-        let found = hu_at(&HEAD, point);
+        let found = value_at(&HEAD, point);
         if !(low..=high).contains(&found) {
             writeln!(wrong, "{name} at {point:?}: found {found} HU, expected {low} to {high}").unwrap();
         }
@@ -78,7 +67,7 @@ fn tissues_are_where_the_atlas_has_them() {
 
 #[test]
 fn a_needle_through_the_forehead_meets_skin_fat_bone_and_brain_in_turn() {
-    let along: Vec<f64> = (0..90).map(|mm| hu_at(&HEAD, [10.0, -120.0 + 0.5 * f64::from(mm), 74.0])).collect();
+    let along: Vec<f64> = (0..90).map(|mm| value_at(&HEAD, [10.0, -120.0 + 0.5 * f64::from(mm), 74.0])).collect();
     let mut rest = along.iter();
     let steps = [
         ("air", [-1000.0, -990.0]),
@@ -243,7 +232,7 @@ fn the_label_map_names_the_structure_at_each_point() {
         ("vessels", [26.0, -6.0, -36.0]),
     ];
     for (name, point) in points {
-        let label = hu_at(&labels, point) as u16;
+        let label = value_at(&labels, point) as u16;
         let found = structures.iter().find(|(number, _)| *number == label).map_or("", |(_, name)| name);
         assert_eq!(found, name, "at {point:?}, label {label}");
     }

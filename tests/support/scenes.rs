@@ -203,3 +203,17 @@ pub(crate) fn scene_around(volume: &Volume, terms: Vec<Term>, shading: Option<Sh
         effects: Effects::default(),
     }
 }
+
+/// The samples of a volume in 16 bits.
+pub(crate) fn stored(volume: &Volume) -> &[i16] {
+    match volume.samples() {
+        Samples::I16(voxels) => voxels,
+        _ => panic!("the volume is stored in 16 bits"),
+    }
+}
+
+/// Value of the voxel nearest to a point in LPS mm.
+pub(crate) fn value_at(volume: &Volume, [x, y, z]: [f64; 3]) -> f64 {
+    let index = volume.grid().lps_mm_to_index().transform_point3(DVec3::new(x, y, z)).round();
+    volume.value([index.x as usize, index.y as usize, index.z as usize])
+}
