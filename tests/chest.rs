@@ -6,9 +6,8 @@ use std::sync::LazyLock;
 use glam::DVec3;
 use pellucid::Volume;
 use pellucid::synthetic::{BodyPhantom, Region, body, body_labels};
-use sha2::{Digest, Sha256};
 
-use crate::support::scenes::{stored, value_at};
+use crate::support::scenes::{digest_on, stored, value_at};
 
 /// The phantom of the default size, without noise.
 static CHEST: LazyLock<Volume> = LazyLock::new(|| make(256, 1, 0.0));
@@ -170,12 +169,7 @@ fn all_structures_occur_and_lie_on_the_lattice_of_the_scan() {
 
 #[test]
 fn one_thread_and_two_make_the_same_bytes_on_every_machine() {
-    let digest = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let volume = pool.install(|| make(64, 7, 5.0));
-        let bytes: Vec<u8> = stored(&volume).iter().flat_map(|hu| hu.to_le_bytes()).collect();
-        Sha256::digest(bytes).iter().fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"))
-    };
+    let digest = |threads| digest_on(threads, || make(64, 7, 5.0));
     let one = digest(1);
     assert_eq!(one, digest(2), "bytes depend on the number of threads");
     assert_eq!(one, SNAPSHOT, "the phantom has changed; if that was meant, take over the new digest");

@@ -5,6 +5,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use pellucid::scene::{Background, Camera, Effects, Light, Model, Projection, Ray, Scene, Shading};
 use pellucid::transfer::{Curve, Knot, Optics, Term, TransferFunction, Weight};
 use pellucid::volume::{Grid, Quantity, Rescale, Samples, Volume};
+use sha2::{Digest, Sha256};
 
 /// Colours of the tests.
 pub(crate) const BONE: [f64; 3] = [0.875, 0.75, 0.5];
@@ -216,4 +217,12 @@ pub(crate) fn stored(volume: &Volume) -> &[i16] {
 pub(crate) fn value_at(volume: &Volume, [x, y, z]: [f64; 3]) -> f64 {
     let index = volume.grid().lps_mm_to_index().transform_point3(DVec3::new(x, y, z)).round();
     volume.value([index.x as usize, index.y as usize, index.z as usize])
+}
+
+/// SHA-256 of the samples of a volume in 16 bits that so many threads make.
+pub(crate) fn digest_on(threads: usize, make: impl Fn() -> Volume + Send) -> String {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let volume = pool.install(make);
+    let bytes: Vec<u8> = stored(&volume).iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    Sha256::digest(bytes).iter().fold(String::new(), |hex, byte| hex + &format!("{byte:02x}"))
 }
