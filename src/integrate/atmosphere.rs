@@ -1,10 +1,8 @@
 //! Effects of light at a sample: the definition of [`Scene::factors`] in f32, and haze.
 
-use glam::DVec3;
-
 use super::Frame;
 use super::light_volumes::{LightVolumes, Transmittances};
-use super::shade::{Beam, Lit, Shader, Spot};
+use super::shade::{Beam, Course, Lit, Shader, Spot};
 use crate::classify::Rgbs;
 use crate::field::{Cell, interpolate};
 use crate::math::absorbed_f32;
@@ -71,9 +69,10 @@ impl Shader for Atmosphere<'_> {
     const NAME: &'static str = "atmosphere";
     type Aim = Aim;
 
-    fn aim(&self, direction: DVec3, aim: &mut Aim) {
+    fn aim(&self, course: &Course, aim: &mut Aim) {
+        let direction = course.direction;
         if let Some(lit) = &self.lit {
-            lit.aim(direction, &mut aim.beams);
+            lit.aim(course, &mut aim.beams);
         }
         aim.scattered.clear();
         if let Some(s) = &self.scene.effects.scattering {

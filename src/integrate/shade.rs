@@ -17,13 +17,14 @@ pub(super) trait Shader: Sync {
     /// What is constant along a ray.
     type Aim: Default;
 
-    /// Computes what is constant along a ray of this direction.
-    fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
+    /// Computes what is constant along a ray.
+    fn aim(&self, course: &Course, aim: &mut Self::Aim);
 
     /// The gradient that it shades by, in stored units per index step.
     #[inline(always)]
     fn gradient_per_index<V: Voxel, K: Spacing>(
         &self,
+        _aim: &Self::Aim,
         field: &Trilinear<'_, V, K>,
         _position: Position,
         cell: &Cell,
@@ -62,6 +63,22 @@ pub(super) trait LaneShader: Shader {
     fn reflect<L: Lanes>(&self, gradient_per_mm: [L; 3], half: impl Fn(usize) -> [L; 3]) -> ([L; 3], [L; 3]);
 }
 
+/// What is known of a ray before its samples are taken.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Course {
+    pub(super) direction: DVec3,
+    /// From the volume's border, where the ray's only sample is held, to the place beyond that it stands for, as a difference of
+    /// continuous indices; 0 if that is inside, and where there are more samples.
+    pub(super) beyond_voxels: DVec3,
+}
+
+impl Course {
+    /// A ray whose samples are all inside.
+    pub(super) fn inside(direction: DVec3) -> Self {
+        Course { direction, beyond_voxels: DVec3::ZERO }
+    }
+}
+
 /// Where a sample is.
 pub(super) struct Spot {
     pub(super) cell: Cell,
@@ -77,7 +94,7 @@ impl Shader for Unlit {
     const NAME: &'static str = "unlit";
     type Aim = ();
 
-    fn aim(&self, _direction: DVec3, _aim: &mut ()) {}
+    fn aim(&self, _course: &Course, _aim: &mut ()) {}
 
     #[inline(always)]
     fn shade(&self, _: &(), sample: Rgbs<f32>, _: &Spot, _: impl FnOnce() -> [f32; 3]) -> Rgbs<f32> {
@@ -225,9 +242,9 @@ impl Shader for Lit<'_> {
     const NAME: &'static str = "lit";
     type Aim = Vec<Beam>;
 
-    fn aim(&self, direction: DVec3, aim: &mut Vec<Beam>) {
+    fn aim(&self, course: &Course, aim: &mut Vec<Beam>) {
         aim.clear();
-        aim.extend(self.definition.directions(direction).map(|(towards, half, color)| Beam {
+        aim.extend(self.definition.directions(course.direction).map(|(towards, half, color)| Beam {
             towards: towards.as_vec3().to_array(),
             half: half.as_vec3().to_array(),
             diffuse: color.map(|c| (c * self.definition.diffuse) as f32),
@@ -360,7 +377,7 @@ mod tests {
                 let direction = DVec3::new(u(0.271), u(0.828), u(0.577)).normalize();
                 let gradient = DVec3::new(u(0.618), u(0.414), u(0.732)) * 400.0 * u(0.05).abs();
                 let sample = [0.5, 0.25, 0.125, 0.75];
-                lit.aim(direction, &mut aim);
+                lit.aim(&Course::inside(direction), &mut aim);
                 let found = lit.shade(&aim, sample, &SPOT, || gradient.as_vec3().to_array());
                 let (reflected, highlight) = definition.factors(gradient, direction);
                 for c in 0..3 {
@@ -378,7 +395,7 @@ mod tests {
         let definition = shading(true, 0.0);
         let lit = Lit::new(&definition);
         let mut aim = Vec::new();
-        lit.aim(DVec3::X, &mut aim);
+        lit.aim(&Course::inside(DVec3::X), &mut aim);
         assert_eq!(lit.shade(&aim, [1.0, 1.0, 1.0, 5.0], &SPOT, || [0.0; 3]), [0.15, 0.15, 0.15, 5.0]);
     }
 }

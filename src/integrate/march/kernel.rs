@@ -12,6 +12,7 @@ use crate::field::{Batch, Chord, Offsets, Pace, Position, SAMPLES, offsets};
 use crate::image::Image;
 use crate::integrate::Frame;
 use crate::integrate::empty_space::EmptySpace;
+use crate::integrate::shade::Course;
 use crate::integrate::tiles::{self, Radiance, Tally};
 use crate::plan::{March, Order};
 use crate::scene::Haze;
@@ -40,7 +41,8 @@ impl<M: Medium> Kernel<'_, M> {
                 light.cross(haze, haze.end_mm);
                 return Some(light.radiance(0));
             };
-            self.medium.aim(ray.direction, aim);
+            let beyond_voxels = stretches[0].beyond_voxels(&chord, dims);
+            self.medium.aim(&Course { direction: ray.direction, beyond_voxels }, aim);
             let around_mm = around(self.medium.haze(), &chord, settings.order);
             let walk = Walk { light, samples: 0, fold };
             let way = Way { kernel: self, aim, dims, chord: &chord, stretches: &stretches, around_mm, walk };

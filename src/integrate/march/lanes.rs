@@ -1,12 +1,10 @@
 //! A scalar field, classified and shaded many samples at a time.
 
-use glam::DVec3;
-
 use super::composite::{EMPTY, Run};
 use super::medium::Medium;
 use crate::classify::LaneClassifier;
 use crate::field::{Batch, Cells, GradientUnits, Trilinear, Voxel, values_of};
-use crate::integrate::shade::LaneShader;
+use crate::integrate::shade::{Course, LaneShader};
 use crate::simd::{Lanes, Pairs};
 
 /// What [`Classified`](super::Classified) is, to the bit, on even slices and with one transfer function everywhere.
@@ -23,8 +21,8 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Medium for ByLanes<'_, 
     type Aim = S::Aim;
     const BY_LANES: bool = true;
 
-    fn aim(&self, direction: DVec3, aim: &mut S::Aim) {
-        self.shader.aim(direction, aim);
+    fn aim(&self, course: &Course, aim: &mut S::Aim) {
+        self.shader.aim(course, aim);
     }
 
     #[inline(always)]

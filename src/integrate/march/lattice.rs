@@ -40,6 +40,17 @@ impl Stretch {
         }
         [self, Stretch::default(), Stretch::default(), Stretch::default()]
     }
+
+    /// How far beyond the border of a volume of `dims` voxels a ray's first stretch begins, as a difference of continuous
+    /// indices: 0 unless it is the one sample of whole steps that are longer than the ray.
+    #[inline(always)]
+    pub(super) fn beyond_voxels(&self, chord: &Chord, dims: [usize; 3]) -> DVec3 {
+        if self.samples > 1 || self.first_mm <= chord.length_mm {
+            return DVec3::ZERO;
+        }
+        let index = chord.index_at(self.first_mm);
+        index - index.clamp(DVec3::ZERO, DVec3::from_array(dims.map(|n| (n - 1) as f64)))
+    }
 }
 
 impl Cuts {
@@ -216,6 +227,26 @@ mod tests {
         assert_eq!(backwards, [(6.0, 2.0), (4.0, 2.0), (2.0, 2.0)]);
         assert_eq!(places(Cuts::from_first(2.0, 2.0, 6.0), Order::FrontToBack).len(), 3, "the exit itself is inside");
         assert_eq!(places(Cuts::from_first(2.0, 2.0, 0.5), Order::FrontToBack), [(2.0, 2.0)], "one in any case");
+    }
+
+    #[test]
+    fn only_a_sample_behind_the_exit_is_beyond_the_volume() {
+        // Through the edge where x and y begin, from (0.25, 0) to (0, 0.5): 1 mm of volume.
+        let dims = [5, 9, 3];
+        let (entry_index, index_per_mm) = (DVec3::new(0.25, 0.0, 1.0), DVec3::new(-0.25, 0.5, 0.0));
+        let chord = Chord { entry_mm: 10.0, length_mm: 1.0, entry_index, index_per_mm };
+        let beyond = |step_mm: f64, rule| {
+            let cuts = Cuts::from_first(step_mm, step_mm, chord.length_mm);
+            cuts.stretches(rule, Order::FrontToBack)[0].beyond_voxels(&chord, dims)
+        };
+        assert_eq!(
+            beyond(3.0, SampleRule::WholeSteps),
+            DVec3::new(-0.5, 0.0, 0.0),
+            "2 mm behind, along y still inside"
+        );
+        assert_eq!(beyond(17.0, SampleRule::WholeSteps), DVec3::new(-4.0, 0.5, 0.0), "16 mm behind");
+        assert_eq!(beyond(0.75, SampleRule::WholeSteps), DVec3::ZERO, "inside");
+        assert_eq!(beyond(3.0, SampleRule::Midpoint), DVec3::ZERO, "other rules stay inside");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::classify::Rgbs;
 use crate::field::Chord;
 use crate::field::{GradientUnits, Macrocells, Pace, Position, Trilinear, Voxel};
 use crate::integrate::empty_space::{EmptySpace, Leap};
-use crate::integrate::shade::{Shader, Spot};
+use crate::integrate::shade::{Course, Shader, Spot};
 use crate::integrate::tiles;
 use crate::integrate::{Frame, Rendered, Statistics};
 use crate::plan::March;
@@ -69,7 +69,8 @@ impl<'a, V: Voxel, S: Shader> LevelChanges<'a, V, S> {
         let (image, tally) = tiles::render(frame, S::Aim::default, |aim, column, row| {
             let ray = camera.pixel_ray(column, row);
             let (chord, stretches) = sampling.along(ray, [column, row])?;
-            self.shader.aim(ray.direction, aim);
+            // No level is crossed by a ray's only sample, wherever that is.
+            self.shader.aim(&Course::inside(ray.direction), aim);
             let mut walk = Walk { light: Light::new(settings), above: None, samples: 0 };
             for stretch in stretches.iter().filter(|stretch| stretch.samples > 0) {
                 self.walk(&mut walk, aim, &chord, stretch);
@@ -117,7 +118,7 @@ impl<'a, V: Voxel, S: Shader> LevelChanges<'a, V, S> {
             _ => return false,
         };
         walk.above = Some(now_above);
-        let gradient = || self.units.per_mm(self.shader.gradient_per_index(&self.field, position, &cell));
+        let gradient = || self.units.per_mm(self.shader.gradient_per_index(aim, &self.field, position, &cell));
         let [r, g, b, opacity] = self.shader.shade(aim, crossed, &Spot { cell, distance_mm }, gradient);
         walk.light.pass([r, g, b].map(f64::from), f64::from(opacity));
         true

@@ -1,12 +1,10 @@
 //! What absorbs and emits along a ray.
 
-use glam::DVec3;
-
 use super::by_place::ByPlace;
 use super::composite::{EMPTY, Run};
 use crate::classify::Rgbs;
 use crate::field::{Batch, GradientUnits, Position, Spacing, Trilinear, Voxel};
-use crate::integrate::shade::{Shader, Spot};
+use crate::integrate::shade::{Course, Shader, Spot};
 use crate::scene::Haze;
 use crate::simd::Lanes;
 
@@ -17,8 +15,8 @@ pub(in super::super) trait Medium: Sync {
     /// Whether it reads the offsets of a batch.
     const BY_LANES: bool;
 
-    /// Computes what is constant along a ray of this direction.
-    fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
+    /// Computes what is constant along a ray.
+    fn aim(&self, course: &Course, aim: &mut Self::Aim);
 
     /// Shaded emission and extinction of a batch, 1/mm, none of them negative and 0 behind the last sample; `None` if there is
     /// nothing.
@@ -42,8 +40,8 @@ pub(in super::super) trait Pointwise: Sync {
     /// What is constant along a ray.
     type Aim: Default;
 
-    /// Computes what is constant along a ray of this direction.
-    fn aim(&self, direction: DVec3, aim: &mut Self::Aim);
+    /// Computes what is constant along a ray.
+    fn aim(&self, course: &Course, aim: &mut Self::Aim);
 
     /// Shaded emission and extinction at a position, this far from the ray's origin, 1/mm, none of them negative.
     fn sample(&self, aim: &Self::Aim, position: Position, distance_mm: f64) -> Rgbs<f32>;
@@ -68,8 +66,8 @@ impl<M: Pointwise> Medium for OneByOne<'_, M> {
     type Aim = M::Aim;
     const BY_LANES: bool = false;
 
-    fn aim(&self, direction: DVec3, aim: &mut M::Aim) {
-        self.0.aim(direction, aim);
+    fn aim(&self, course: &Course, aim: &mut M::Aim) {
+        self.0.aim(course, aim);
     }
 
     #[inline(always)]
@@ -110,8 +108,8 @@ pub(in super::super) struct Classified<'a, V, K, C, S> {
 impl<V: Voxel, K: Spacing, C: ByPlace, S: Shader> Pointwise for Classified<'_, V, K, C, S> {
     type Aim = S::Aim;
 
-    fn aim(&self, direction: DVec3, aim: &mut S::Aim) {
-        self.shader.aim(direction, aim);
+    fn aim(&self, course: &Course, aim: &mut S::Aim) {
+        self.shader.aim(course, aim);
     }
 
     #[inline(always)]
@@ -130,7 +128,7 @@ impl<V: Voxel, K: Spacing, C: ByPlace, S: Shader> Pointwise for Classified<'_, V
         if optics == [0.0; 4] {
             return self.shader.space();
         }
-        let gradient = || self.units.per_mm(self.shader.gradient_per_index(&self.field, position, &cell));
+        let gradient = || self.units.per_mm(self.shader.gradient_per_index(aim, &self.field, position, &cell));
         self.shader.shade(aim, optics, &Spot { cell, distance_mm }, gradient)
     }
 

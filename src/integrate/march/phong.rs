@@ -3,8 +3,9 @@
 //! Where it departs from [`Shading`]: the highlight is Phong's, `(r·v)^shininess` with the mirrored light `r`; there is no
 //! fade where the gradient vanishes; a colour brighter than 1 is cut off; and the gradient is a difference of values
 //! `n/(n − 1)` voxels before and after the sample along an axis of `n` voxels, clamped at the border, where central
-//! differences at the voxels are one voxel apart and one-sided. The one sample of a ray that is shorter than a step is held at
-//! the border, and its differences are taken there, where VTK's are around the place beyond (`tests/vtk/PRESETS.md`).
+//! differences at the voxels are one voxel apart and one-sided. The one sample of a ray that is shorter than a step lies behind
+//! the volume. Its value is that of the border, and its differences are taken around the place beyond, each end of them
+//! clamped by itself, so that they reach less far into the volume (`tests/vtk/rays.py` follows such rays).
 //!
 //! Unless a headlight is the only light, VTK takes another path. There a headlight shines along the camera's axis; ambient
 //! light is left out (it is added without the colour of what it falls on, from lights that have none by default); on a
@@ -15,7 +16,7 @@ use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use crate::classify::Rgbs;
 use crate::field::{Cell, Position, Spacing, Trilinear, Voxel};
-use crate::integrate::shade::{Shader, Spot};
+use crate::integrate::shade::{Course, Shader, Spot};
 use crate::scene::{Camera, Light, Shading};
 use crate::volume::Grid;
 
@@ -36,8 +37,16 @@ pub(in super::super) struct VtkPhong<'a> {
     brightest: f32,
 }
 
+/// What is constant along one ray.
+#[derive(Default)]
+pub(in super::super) struct Aim {
+    beams: Vec<Beam>,
+    /// From where the ray's only sample is held to where it is; see [`Course`].
+    beyond_voxels: [f64; 3],
+}
+
 /// A light as seen along one ray.
-pub(in super::super) struct Beam {
+struct Beam {
     towards: [f32; 3],
     to_eye: [f32; 3],
     /// `l·v`.
@@ -67,12 +76,13 @@ impl<'a> VtkPhong<'a> {
 impl Shader for VtkPhong<'_> {
     const SHADES: bool = true;
     const NAME: &'static str = "vtk-phong";
-    type Aim = Vec<Beam>;
+    type Aim = Aim;
 
-    fn aim(&self, direction: DVec3, aim: &mut Vec<Beam>) {
-        let to_eye = -direction;
-        aim.clear();
-        aim.extend(self.definition.lights.iter().map(|light| {
+    fn aim(&self, course: &Course, aim: &mut Aim) {
+        let to_eye = -course.direction;
+        aim.beyond_voxels = course.beyond_voxels.to_array();
+        aim.beams.clear();
+        aim.beams.extend(self.definition.lights.iter().map(|light| {
             let (towards, color) = match *light {
                 Light::Headlight { color } if self.headlight_alone => (to_eye, color),
                 Light::Headlight { color } => (-self.forward, color),
@@ -91,19 +101,23 @@ impl Shader for VtkPhong<'_> {
     #[inline(always)]
     fn gradient_per_index<V: Voxel, K: Spacing>(
         &self,
+        aim: &Aim,
         field: &Trilinear<'_, V, K>,
         position: Position,
         _cell: &Cell,
     ) -> [f32; 3] {
         let dims = field.dims();
         let value = |axis: usize, voxels: f64| field.value(&field.cell(position.beside(axis, voxels, dims)));
-        std::array::from_fn(|axis| 0.5 * (value(axis, self.reach[axis]) - value(axis, -self.reach[axis])))
+        std::array::from_fn(|axis| {
+            let (beyond, reach) = (aim.beyond_voxels[axis], self.reach[axis]);
+            0.5 * (value(axis, beyond + reach) - value(axis, beyond - reach))
+        })
     }
 
     #[inline(always)]
     fn shade(
         &self,
-        aim: &Vec<Beam>,
+        aim: &Aim,
         [r, g, b, opacity]: Rgbs<f32>,
         _: &Spot,
         gradient: impl FnOnce() -> [f32; 3],
@@ -114,7 +128,7 @@ impl Shader for VtkPhong<'_> {
         let square = dot(gradient_per_mm, gradient_per_mm);
         if square > 0.0 {
             let toward_normal = -1.0 / square.sqrt();
-            for beam in aim {
+            for beam in &aim.beams {
                 let facing = dot(gradient_per_mm, beam.towards) * toward_normal;
                 let lit = if self.definition.two_sided { facing.abs() } else { facing.max(0.0) };
                 let to_eye = dot(gradient_per_mm, beam.to_eye) * toward_normal;
@@ -178,8 +192,8 @@ mod tests {
         let parallel = Projection::Parallel { height_mm: 1.0 };
         let camera = Camera::look_at(-9.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, parallel, [1, 1]).unwrap();
         let shader = VtkPhong::new(definition, &camera, &grid, false);
-        let mut aim = Vec::new();
-        shader.aim(DVec3::Z, &mut aim);
+        let mut aim = Aim::default();
+        shader.aim(&Course::inside(DVec3::Z), &mut aim);
         let spot = Spot { cell: Cell { corner: [0; 3], fraction: [0.0; 3] }, distance_mm: 0.0 };
         shader.shade(&aim, [0.5, 0.5, 0.5, 0.5], &spot, || gradient)
     }
@@ -199,6 +213,37 @@ mod tests {
     fn with_another_light_there_is_no_ambient_light() {
         let away = Light::Directional { towards: DVec3::X, color: [1.0; 3] };
         assert_eq!(shaded(&shading(vec![away]), [0.0, 0.0, 1.0])[0], 0.0, "across the light");
+    }
+
+    #[test]
+    fn beyond_the_border_differences_reach_less_far_into_the_volume() {
+        // x² + 10 y between voxels of 5 along an axis: differences are of values 1.25 voxels before and after.
+        let definition = shading(vec![Light::Headlight { color: [1.0; 3] }]);
+        let dims = [5, 5, 5];
+        let voxels: Vec<f32> = (0..125).map(|v| ((v % 5) * (v % 5) + 10 * (v / 5 % 5)) as f32).collect();
+        let grid = Grid::axis_aligned(dims, DVec3::ONE).unwrap();
+        let parallel = Projection::Parallel { height_mm: 1.0 };
+        let camera = Camera::look_at(-9.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, parallel, [1, 1]).unwrap();
+        let shader = VtkPhong::new(&definition, &camera, &grid, false);
+        let field = Trilinear::new(&voxels, dims).unwrap();
+        // Places on x with y = 2 and z = 2, and what is at both ends of the difference.
+        for (x, before, after) in [
+            (2.0, 1.0 - 0.25, 9.0 + 0.25 * 7.0),
+            (4.0, 4.0 + 0.75 * 5.0, 16.0),
+            (4.5, 9.0 + 0.25 * 7.0, 16.0),
+            (5.5, 16.0, 16.0),
+            (-0.5, 0.0, 0.75),
+            (-1.5, 0.0, 0.0),
+        ] {
+            let (place, held) = (DVec3::new(x, 2.0, 2.0), DVec3::new(x.clamp(0.0, 4.0), 2.0, 2.0));
+            let mut aim = Aim::default();
+            shader.aim(&Course { direction: DVec3::Z, beyond_voxels: place - held }, &mut aim);
+            let position = Position::new(held, dims);
+            let found = shader.gradient_per_index(&aim, &field, position, &position.even_cell());
+            let expected = [0.5 * (after - before), 12.5, 0.0];
+            let apart = (0..3).map(|a| (f64::from(found[a]) - expected[a]).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-5, "x = {x}: found {found:?}, expected {expected:?}");
+        }
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Media given at the voxels: emission and extinction are interpolated at each sample.
 
-use glam::{DVec3, Vec4};
+use glam::Vec4;
 
 use super::medium::Pointwise;
 use crate::classify::Rgbs;
 use crate::error::Result;
 use crate::field::{Corners, Position};
+use crate::integrate::shade::Course;
 use crate::integrate::texels::Texels;
 
 /// A medium given at the voxels; shading is in the texels already.
@@ -33,7 +34,7 @@ impl<T: Texels<f32>> AtVoxels<T> {
 impl<T: Texels<f32>> Pointwise for AtVoxels<T> {
     type Aim = ();
 
-    fn aim(&self, _: DVec3, (): &mut ()) {}
+    fn aim(&self, _: &Course, (): &mut ()) {}
 
     #[inline(always)]
     fn sample(&self, (): &(), position: Position, _: f64) -> Rgbs<f32> {
