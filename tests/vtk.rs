@@ -1,6 +1,7 @@
 //! Against VTK: its pictures of the scenes in `vtk/scenes`, as `vtk/generate.py` rendered them, and pellucid's march with
 //! its conventions. Neither Python nor VTK is needed here.
 
+mod beyond;
 mod changes;
 mod exports;
 mod pictures;

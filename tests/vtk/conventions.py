@@ -204,6 +204,25 @@ def lights():
     assert abs(wrong - abs(towards @ gradient)) > 0.1, "the experiment tells them apart"
 
 
+def normals_beyond():
+    """The 8 mm of ray have one sample of a longer step: its differences are taken around where it is, behind the box."""
+    shading = {"ambient": 0, "diffuse": 1, "specular": 0, "shininess": 1, "two_sided": True, "lights": []}
+
+    def facing(step, values):
+        red, _, _, alpha = box([0.05, 0.05], step, values=values, shading=shading)
+        return red / alpha
+
+    reach = N / (N - 1)
+    for step in (8.5, 9.0, 9.5):
+        at_border, beyond = (np.array([8 - min(x - reach, 8), 2 * reach]) for x in (8.0, step))
+        held, expected = (d[0] / np.linalg.norm(d) for d in (at_border, beyond))
+        holds(f"differences of a sample {step - 8} mm behind the box are around it, each end clamped", facing(step, lambda x, y, z: x + y), expected, 1e-4)
+        assert abs(held - expected) > 0.1, "the experiment tells it from differences at the border"
+    magnitude, rows = (lambda x, y, z: x), np.linspace(0, 0.1, 1024)[:, None] * np.ones((1, 1024))
+    on_the_border = absorbed(0.1, 9.5)
+    holds("a second channel is read there as at the border", box(rows, 9.5, gradient=magnitude)[3], on_the_border, 1e-4)
+
+
 def clipping():
     """Optical depth in steps: how many samples of the 8 mm along x are left."""
 
@@ -368,7 +387,7 @@ def march(described, folder, pixels, kind):
 def main():
     # Also for VTK in this process, whose window is not the script's.
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    for experiment in (sampling, opacity, textures, gradients, lights, clipping, blend_modes, fixed_point):
+    for experiment in (sampling, opacity, textures, gradients, lights, normals_beyond, clipping, blend_modes, fixed_point):
         experiment()
     if len(sys.argv) > 1:
         rounding(Pellucid(sys.argv[1]))

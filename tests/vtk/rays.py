@@ -75,24 +75,22 @@ class Shader:
         self.shading = described["shading"]
         self.dims, self.spacing = np.array(values.shape[::-1]), np.array(described["spacing_mm"])
 
-    def march(self, rays, kind, held=False):
+    def march(self, rays, kind):
         """Premultiplied RGBA of the rays, (n, 4), computed with numbers of a type. The one sample of a ray that is shorter than a
-        step lies beyond the volume; held, it is moved to the border."""
-        return March(self, rays.of(kind), kind, held).pixels
+        step lies behind the volume."""
+        return March(self, rays.of(kind), kind).pixels
 
 
 class March:
     """Rays on their way, in numbers of one type."""
 
-    def __init__(self, shader, rays, kind, held):
+    def __init__(self, shader, rays, kind):
         self.kind, self.shader, self.step = kind, shader, rays.step
         self.dims, self.values = shader.dims.astype(kind), shader.values.astype(kind)
         self.opacity, self.colors = shader.opacity.astype(kind), shader.colors.astype(kind)
         self.pixels = np.zeros((len(rays.first), 4), kind)
         position, going = rays.first.copy(), np.arange(len(rays.first))
         last, before = ((shader.dims - 0.5) / shader.dims).astype(kind), (0.5 / shader.dims).astype(kind)
-        if held:
-            position = np.clip(position, before, last)
         while len(going):
             self.sample(position[going], going)
             position[going] += self.step[going]
