@@ -6,9 +6,9 @@ use pellucid::Image;
 use super::{rendered, spec};
 
 /// Opaque everywhere, and white where it is lit by diffuse light alone.
-const OPAQUE: &str = "transfer_function=[{widgets: [{trapezoid: {hu: [-3000, -2000, 4000, 5000]}, opacity_per_mm: 1}]}]";
-const DIFFUSE: &str =
-    "effects.shading={ambient: 0, diffuse: 1, specular: 0, shininess: 1, soft_gradient_hu_per_mm: 0}";
+const OPAQUE: &str = "transfer_function=[{widgets: [\
+     {trapezoid: {hu: [-3000, -2000, 4000, 5000]}, opacity_per_mm: 1, color: '#ffffff'}]}]";
+const DIFFUSE: &str = "effects.shading={ambient: 0, diffuse: 1, specular: 0, shininess: 1, soft_gradient_hu_per_mm: 0}";
 
 fn picture(more: &[&str]) -> Image {
     let spec = spec("head-lit", &[&[OPAQUE, DIFFUSE], more].concat()).expect("a phantom");
@@ -31,5 +31,5 @@ fn a_sample_far_behind_the_volume_has_no_normal() {
 fn with_differences_at_the_border_it_would_have_one() {
     let [shown, lit] =
         shown_and_lit(&picture(&["integrate.march.step_mm=5000", "integrate.march.reflection=blinn-phong"]));
-    assert!(lit > 100, "of {shown} pixels shown {lit} are lit, expected some where the phantom meets the border");
+    assert!(lit > shown / 2, "of {shown} pixels shown {lit} are lit, expected most");
 }
