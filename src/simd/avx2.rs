@@ -7,7 +7,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::lanes::{absorbed, last, last_pair, last_quad, last_word, mean_transmittance};
 use super::register::{arithmetic, operators};
-use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, Table};
+use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
 use crate::math::Number;
 
 /// Runs a kernel compiled for these instructions.
@@ -192,6 +192,10 @@ impl Lanes for F32x8 {
                 Err(_) => F32x8(_mm256_i32gather_ps::<4>(entries.as_ptr(), at)),
             }
         }
+    }
+    #[inline(always)]
+    fn pick32(table: &[f32; TWO_BATCHES], at: I32x8) -> Self {
+        unsafe { F32x8(_mm256_i32gather_ps::<4>(table.as_ptr(), clamped(at, TWO_BATCHES as u32 - 1))) }
     }
     #[inline(always)]
     fn pick16(table: &[f32; BATCH], at: I32x8) -> Self {

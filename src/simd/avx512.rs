@@ -7,7 +7,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::lanes::{absorbed, last, last_pair, last_quad, last_word, mean_transmittance};
 use super::register::{arithmetic, operators};
-use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, Table};
+use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
 use crate::math::Number;
 
 /// Runs a kernel compiled for these instructions.
@@ -58,6 +58,29 @@ fn moved(all: __m512, distance: i32) -> __m512 {
     unsafe {
         let from = _mm512_sub_epi32(I32x16::count().0, _mm512_set1_epi32(distance));
         _mm512_maskz_permutexvar_ps(u16::MAX << distance, from, all)
+    }
+}
+
+/// Indices, which leave a register two at a time.
+#[inline(always)]
+fn indices(at: __m512i) -> [usize; 16] {
+    // SAFETY: as for all registers, see the module.
+    unsafe {
+        let quarters = [
+            _mm512_castsi512_si128(at),
+            _mm512_extracti32x4_epi32::<1>(at),
+            _mm512_extracti32x4_epi32::<2>(at),
+            _mm512_extracti32x4_epi32::<3>(at),
+        ];
+        let mut indices = [0; 16];
+        for (four, quarter) in indices.chunks_exact_mut(4).zip(quarters) {
+            let (low, high) = (_mm_cvtsi128_si64(quarter) as u64, _mm_extract_epi64::<1>(quarter) as u64);
+            four[0] = (low & 0xffff_ffff) as usize;
+            four[1] = (low >> 32) as usize;
+            four[2] = (high & 0xffff_ffff) as usize;
+            four[3] = (high >> 32) as usize;
+        }
+        indices
     }
 }
 
@@ -156,6 +179,14 @@ impl Lanes for F32x16 {
         }
     }
     #[inline(always)]
+    fn pick32(table: &[f32; TWO_BATCHES], at: I32x16) -> Self {
+        unsafe {
+            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(TWO_BATCHES as i32 - 1));
+            let (low, high) = table.split_at(BATCH);
+            F32x16(_mm512_permutex2var_ps(_mm512_loadu_ps(low.as_ptr()), at, _mm512_loadu_ps(high.as_ptr())))
+        }
+    }
+    #[inline(always)]
     fn pick16(table: &[f32; BATCH], at: I32x16) -> Self {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(BATCH as i32 - 1));
@@ -167,13 +198,18 @@ impl Lanes for F32x16 {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_pair(samples) as i32));
             // Two neighbours in one read of 32 bits; sixteen reads take less time than a gather.
-            let mut places = [0u32; 16];
-            _mm512_storeu_si512(places.as_mut_ptr().cast(), at);
-            let mut both = [0i32; 16];
-            for (both, &place) in both.iter_mut().zip(&places) {
-                *both = samples.as_ptr().add(place as usize).cast::<i32>().read_unaligned();
-            }
-            halves(_mm512_loadu_si512(both.as_ptr().cast()))
+            let places = indices(at);
+            let read = |k: usize| samples.as_ptr().add(places[k]).cast::<i32>().read_unaligned();
+            let four = |k: usize| {
+                let first = _mm_cvtsi32_si128(read(k));
+                let second = _mm_insert_epi32::<1>(first, read(k + 1));
+                let third = _mm_insert_epi32::<2>(second, read(k + 2));
+                _mm_insert_epi32::<3>(third, read(k + 3))
+            };
+            let both = _mm512_castsi128_si512(four(0));
+            let both = _mm512_inserti32x4::<1>(both, four(4));
+            let both = _mm512_inserti32x4::<2>(both, four(8));
+            halves(_mm512_inserti32x4::<3>(both, four(12)))
         }
     }
     #[inline(always)]
@@ -402,11 +438,9 @@ impl Ints for I32x16 {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_word(from) as i32));
             // Sixteen reads take less time than a gather.
-            let mut places = [0u32; 16];
-            _mm512_storeu_si512(places.as_mut_ptr().cast(), at);
             let mut bytes = [0u8; 16];
-            for (byte, &place) in bytes.iter_mut().zip(&places) {
-                *byte = *from.as_ptr().add(place as usize);
+            for (byte, place) in bytes.iter_mut().zip(indices(at)) {
+                *byte = *from.as_ptr().add(place);
             }
             I32x16(_mm512_cvtepu8_epi32(_mm_loadu_si128(bytes.as_ptr().cast())))
         }

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::{BATCH, Table};
+use super::{BATCH, TWO_BATCHES, Table};
 use crate::math::Number;
 
 /// f32 numbers side by side, each computed for itself.
@@ -49,6 +49,8 @@ pub(crate) trait Lanes: Number {
     fn pick(table: &Table, at: Self::Ints) -> Self;
     /// Entries of a table of one register of the widest level; indices beyond its end give its last entry.
     fn pick16(table: &[f32; BATCH], at: Self::Ints) -> Self;
+    /// Entries of a table of two of these; likewise.
+    fn pick32(table: &[f32; TWO_BATCHES], at: Self::Ints) -> Self;
     /// The samples at `at` and at `at + 1`, as f32: see [`Pairs`].
     fn pairs_i16(samples: &[i16], at: Self::Ints) -> [Self; 2];
     /// The samples at `at` and at `at + 1`: see [`Pairs`].

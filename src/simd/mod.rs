@@ -28,5 +28,8 @@ pub(crate) use table::Table;
 /// same order.
 pub(crate) const BATCH: usize = 16;
 
+/// Numbers in two of them.
+pub(crate) const TWO_BATCHES: usize = 2 * BATCH;
+
 #[cfg(test)]
 mod tests;

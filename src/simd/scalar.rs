@@ -1,7 +1,7 @@
 //! One lane: the twin of every register, on any processor.
 
 use super::lanes::{last_pair, last_quad};
-use super::{BATCH, Doubles, Ints, Lanes, Mask, Table};
+use super::{BATCH, Doubles, Ints, Lanes, Mask, TWO_BATCHES, Table};
 
 impl Lanes for f32 {
     const LANES: usize = 1;
@@ -61,6 +61,10 @@ impl Lanes for f32 {
     fn pick(table: &Table, at: i32) -> Self {
         let entries = table.entries();
         entries[(at as u32 as usize).min(entries.len() - 1)]
+    }
+    #[inline(always)]
+    fn pick32(table: &[f32; TWO_BATCHES], at: i32) -> Self {
+        table[(at as u32 as usize).min(TWO_BATCHES - 1)]
     }
     #[inline(always)]
     fn pick16(table: &[f32; BATCH], at: i32) -> Self {

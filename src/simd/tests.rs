@@ -1,6 +1,6 @@
 //! One body over all levels: every lane does what one number does, to the bit.
 
-use super::{BATCH, Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, Table};
+use super::{BATCH, Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, TWO_BATCHES, Table};
 
 /// Numbers of all magnitudes, signs and roundings, the same on each call.
 fn numbers(count: usize, seed: u32) -> Vec<f32> {
@@ -28,6 +28,7 @@ impl Kernel for Everything {
         let places: Vec<i32> = a.iter().map(|x| (x.abs() * 7.0) as i32).collect();
         let wholes: Vec<i32> = samples.iter().map(|&x| i32::from(x) * 77).collect();
         let sixteen: [f32; BATCH] = std::array::from_fn(|i| b[i]);
+        let thirty_two: [f32; TWO_BATCHES] = std::array::from_fn(|i| b[i]);
         let mut out = vec![Vec::new(); 60];
         for at in (0..4096).step_by(L::LANES) {
             let (x, y) = (L::load(&a[at..]), L::load(&b[at..]));
@@ -63,6 +64,7 @@ impl Kernel for Everything {
                 L::from_ints(places * whole - places.min(whole).shifted_right(2)),
                 L::from_ints(whole.and(L::Ints::splat(0xff0f)) + places.max(whole)),
                 L::pick16(&sixteen, places),
+                L::pick32(&thirty_two, places),
             ];
             let [first, second] = i16::pairs::<L>(&samples, places);
             let [third, fourth] = f32::pairs::<L>(&b, places);

@@ -124,6 +124,23 @@ impl Seen {
     }
 }
 
+impl Seen {
+    /// The lights as rays see them, by their seats.
+    #[inline(always)]
+    pub(super) fn lights<L: Lanes>(&self, lighting: &Lighting, seat: L::Ints) -> Lights<L> {
+        let mut lights = Lights { towards: [[L::ZERO; 3]; LIGHTS], half: [[L::ZERO; 3]; LIGHTS] };
+        for n in 0..lighting.lights() {
+            for a in 0..3 {
+                lights.towards[n][a] = L::pick32(&self.towards[n][a], seat);
+                if !lighting.are_at_the_eye {
+                    lights.half[n][a] = L::pick32(&self.half[n][a], seat);
+                }
+            }
+        }
+        lights
+    }
+}
+
 /// The lights as the rays of some lanes see them.
 #[derive(Clone, Copy)]
 pub(super) struct Lights<L> {
@@ -160,18 +177,24 @@ pub(super) fn along_light<L: Lanes>(g: &[Cubic<L>; 3], l: &[L; 3]) -> Cubic<L> {
     )
 }
 
-/// `x` to a whole power, by squaring.
+/// Numbers to a whole power, by squaring.
 #[inline(always)]
-pub(super) fn power<L: Lanes>(x: L, exponent: u32) -> L {
-    let (mut result, mut square, mut rest) = (L::ONE, x, exponent);
-    while rest > 0 {
+pub(super) fn power<L: Lanes, const N: usize>(x: [L; N], exponent: u32) -> [L; N] {
+    let (mut results, mut squares, mut rest) = ([L::ONE; N], x, exponent);
+    loop {
         if rest & 1 == 1 {
-            result = result * square;
+            for (result, &square) in results.iter_mut().zip(&squares) {
+                *result = *result * square;
+            }
         }
-        square = square * square;
         rest >>= 1;
+        if rest == 0 {
+            return results;
+        }
+        for square in &mut squares {
+            *square = *square * *square;
+        }
     }
-    result
 }
 
 /// How much the gradient's direction and fade can vary over pieces: see the twin.
@@ -236,7 +259,7 @@ impl<L: Lanes> Variation<L> {
         let (f0, f1, f2) = if p == 1 {
             (high, L::ONE, L::ZERO)
         } else {
-            let power = power(high, p - 2);
+            let [power] = power([high], p - 2);
             (power * high * high, number(exponent) * power * high, number(exponent * (exponent - 1.0)) * power)
         };
         // A function with |f′| ≤ L is within L/2 of the line through its ends, one with |f″| ≤ K within K/8.
@@ -290,7 +313,7 @@ impl Lighting {
                     factors.reflected[end][c] += number(self.diffuse * f64::from(color[c])) * lambert;
                 }
                 if self.specular != 0.0 {
-                    let gloss = power(shines[end].min(L::ONE), self.shininess);
+                    let [gloss] = power([shines[end].min(L::ONE)], self.shininess);
                     let gloss = L::select(seen, fade[end] * gloss, L::ZERO);
                     for c in 0..3 {
                         factors.highlight[end][c] += number(self.specular * f64::from(color[c])) * gloss;

@@ -4,10 +4,10 @@
 use super::function::Function;
 use super::light::{LIGHTS, Lighting, Lights, Seen, along_light};
 use super::pieces::{Next, Run, Runs, load_fields, put};
-use super::queue::{Passed, Results, Shown};
+use super::queue::{Results, Shown, Way};
 use super::shaded::Estimate;
-use super::voxels::{Corners, Voxels};
-use super::walk::RAYS;
+use super::voxels::Voxels;
+use super::walk::{RAYS, STEPS};
 use crate::field::Voxel;
 use crate::integrate::exact::piece::Integral;
 use crate::math::bernstein::{Cubic, restrict, trilinear_along};
@@ -25,6 +25,8 @@ const MOST_ATTEMPTS: usize = 300;
 #[derive(Debug, Clone)]
 pub(super) struct Allowance {
     pub(super) by_absorption: f32,
+    /// To be shared out along each ray by length.
+    per_ray: f64,
     pub(super) per_mm: [f32; RAYS],
     pub(super) per_cell: [f32; RAYS],
     /// By seat, the variance of what a piece may miss, over what it absorbs.
@@ -33,26 +35,44 @@ pub(super) struct Allowance {
     pub(super) largest_square: [f32; RAYS],
 }
 
+/// What is allowed behind less light than this is as if so much were left, so that f32 holds it: of rays that do not end early.
+const FAINTEST: f64 = 1e-12;
+
 /// The share of the light that pieces may absorb before they may miss less than their share of the variance.
 const LARGEST: f64 = 0.02;
 
 impl Allowance {
-    pub(super) fn new(by_absorption: f64) -> Self {
+    /// Of [`Budget::of_pieces`](crate::integrate::exact::budget::Budget::of_pieces).
+    pub(super) fn new([by_absorption, per_ray]: [f64; 2]) -> Self {
         let by_absorption = by_absorption as f32;
         let none = [0.0; RAYS];
-        Allowance { by_absorption, per_mm: none, per_cell: none, variance: none, largest_square: none }
+        Allowance { by_absorption, per_ray, per_mm: none, per_cell: none, variance: none, largest_square: none }
     }
 
-    /// Shares out what may be missed behind this transmittance.
-    pub(super) fn estimate(&mut self, seat: usize, estimate: &Estimate, transmittance: f64) {
-        self.variance[seat] = (estimate.variance() / transmittance) as f32;
-        self.largest_square[seat] = (LARGEST * estimate.variance() / (transmittance * transmittance)) as f32;
+    /// Shares out what may be spent behind this transmittance on a ray of 1 / `per_length_mm`, and what earlier pieces `left`. What is
+    /// behind counts the less the less light gets there.
+    #[inline(always)]
+    pub(super) fn share(
+        &mut self,
+        seat: usize,
+        transmittance: f64,
+        per_length_mm: f64,
+        left: f64,
+        estimate: Option<Estimate>,
+    ) {
+        let counts = 1.0 / transmittance.max(FAINTEST);
+        self.per_mm[seat] = (self.per_ray * per_length_mm * counts) as f32;
+        self.per_cell[seat] = (left.max(0.0) * counts * (1.0 / STEPS as f64)) as f32;
+        if let Some(estimate) = estimate {
+            let variance = estimate.variance() * counts;
+            self.variance[seat] = variance as f32;
+            self.largest_square[seat] = (LARGEST * variance * counts) as f32;
+        }
     }
 }
 
 /// What is the same for all cells of a round.
 pub(super) struct Scenery<'s, 'v, V> {
-    pub(super) passed: &'s Passed,
     pub(super) voxels: &'s Voxels<'v, V>,
     pub(super) lighting: &'s Lighting,
     pub(super) seen: &'s Seen,
@@ -71,45 +91,18 @@ struct Cells<L> {
 impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
     /// Reads the gradients of cells, and how their rays see the lights.
     #[inline(always)]
-    fn cells<L: Lanes>(&self, slots: &[i32]) -> Cells<L> {
-        let mut ints = [[0; 16]; 4];
-        let mut floats = [[0.0; 16]; 8 + 6 * LIGHTS];
-        for (k, &slot) in slots.iter().enumerate().take(L::LANES) {
-            let slot = slot as usize;
-            let seat = self.passed.seat[slot] as usize;
-            ints[3][k] = self.passed.base[slot];
-            floats[6][k] = self.allowance.per_mm[seat];
-            floats[7][k] = self.allowance.per_cell[seat];
-            for a in 0..3 {
-                ints[a][k] = self.passed.cell[a][slot];
-                floats[a][k] = self.passed.from[a][slot];
-                floats[3 + a][k] = self.passed.to[a][slot];
-                for n in 0..self.lighting.lights() {
-                    floats[8 + 6 * n + a][k] = self.seen.towards[n][a][seat];
-                    floats[11 + 6 * n + a][k] = self.seen.half[n][a][seat];
-                }
-            }
+    fn cells<L: Lanes>(&self, way: &Way<L>) -> Cells<L> {
+        let corners = self.voxels.corners::<L>(way.corners.base);
+        let gradients = self.voxels.gradients(&way.corners, &corners);
+        Cells {
+            gradient: each(
+                #[inline(always)]
+                |a| trilinear_along(&gradients[a], way.from, way.to),
+            ),
+            lights: self.seen.lights(self.lighting, way.seat),
+            allowed_per_mm: L::pick32(&self.allowance.per_mm, way.seat),
+            allowed_per_cell: L::pick32(&self.allowance.per_cell, way.seat),
         }
-        let vector =
-            [0, 3].map(|first| [L::load(&floats[first]), L::load(&floats[first + 1]), L::load(&floats[first + 2])]);
-        let [from, to] = vector;
-        let mut lights = Lights { towards: [[L::ZERO; 3]; LIGHTS], half: [[L::ZERO; 3]; LIGHTS] };
-        for n in 0..LIGHTS {
-            for a in 0..3 {
-                lights.towards[n][a] = L::load(&floats[8 + 6 * n + a]);
-                lights.half[n][a] = L::load(&floats[11 + 6 * n + a]);
-            }
-        }
-        let base = L::Ints::load(&ints[3]);
-        let at = Corners { cell: [L::Ints::load(&ints[0]), L::Ints::load(&ints[1]), L::Ints::load(&ints[2])], base };
-        let corners = self.voxels.corners::<L>(base);
-        let gradients = self.voxels.gradients(&at, &corners);
-        let gradient = [
-            trilinear_along(&gradients[0], from, to),
-            trilinear_along(&gradients[1], from, to),
-            trilinear_along(&gradients[2], from, to),
-        ];
-        Cells { gradient, lights, allowed_per_mm: L::load(&floats[6]), allowed_per_cell: L::load(&floats[7]) }
     }
 }
 
@@ -127,7 +120,7 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let length_mm = L::load(&shown.length_mm[first..]);
         let harm = L::from_f64(f64::from(scenery.harm_per_mm)) * length_mm;
         let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
-        let cells = scenery.cells::<L>(&shown.slot[first..shown.count]);
+        let cells = scenery.cells::<L>(&shown.way.load(first));
         let mut runs = Runs::new(&fields, function);
         let mut sides: [Run<L>; LIGHTS] = each(
             #[inline(always)]

@@ -9,8 +9,9 @@ use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, range, trilinear_along};
 use crate::simd::{Ints, Lanes, Mask, Pairs};
 
-/// Roundings that a value of a cubic may have suffered.
-pub(super) const ROUNDINGS: f64 = 8.0;
+/// Roundings that a value of a cubic may have suffered: its own, and those of the coordinates that it was made from, which may be
+/// off by 2e-6 after the [`AHEAD`] steps that rays are walked in f32.
+pub(super) const ROUNDINGS: f64 = 64.0;
 
 /// The field of one value, or of value and gradient magnitude.
 pub(in crate::integrate::exact) trait Fields<const F: usize> {
@@ -87,7 +88,7 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
         }
         let (cells, corners, slot) = (&steps[n], &corners[n], first + n * RAYS);
         let at = Corners { cell: lines.cell(cells), base: cells.base };
-        let (from, to) = (lines.coordinates(cells, cells.at_mm), lines.coordinates(cells, cells.to_mm));
+        let (from, to) = (lines.coordinates(cells, cells.from_mm), lines.coordinates(cells, cells.to_mm));
         let fields = <Read as Fields<F>>::along(voxels, &at, corners, from, to);
         let mut least = [L::Ints::splat(0); F];
         let mut most = least;
@@ -100,15 +101,12 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
         if !shows.any() {
             continue;
         }
-        at.base.store(&mut passed.base[slot..]);
         for a in 0..3 {
             at.cell[a].store(&mut passed.cell[a][slot..]);
-            from[a].store(&mut passed.from[a][slot..]);
-            to[a].store(&mut passed.to[a][slot..]);
         }
-        L::from_doubles(cells.to_mm).store(&mut passed.exit_mm[slot..]);
+        cells.exit_mm().store(&mut passed.exit_mm[slot..]);
         let slots = L::Ints::count() + L::Ints::splat(slot as i32);
-        let length_mm = L::from_doubles(cells.to_mm - cells.at_mm);
+        let length_mm = cells.to_mm - cells.from_mm;
         let way = is_lit.then(
             #[inline(always)]
             || Way { corners: at, seat: slots.and(L::Ints::splat(RAYS as i32 - 1)), from, to },

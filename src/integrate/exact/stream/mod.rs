@@ -17,6 +17,7 @@ mod light;
 mod lit;
 mod look;
 mod nodes;
+mod parts;
 mod pieces;
 mod queue;
 mod shaded;
@@ -45,16 +46,13 @@ use light::Seen;
 use lit::{Allowance, Scenery, lit};
 use look::look;
 use queue::{Passed, Results, Shown};
-use walk::{RAYS, STEPS, Walks};
+use walk::{RAYS, Walks};
 
 pub(super) use function::{Function, OfValue, OfValueAndMagnitude};
 pub(super) use light::Lighting;
 pub(super) use look::{Fields, Read};
 pub(super) use shaded::{DEVIATIONS, Estimate};
 pub(super) use voxels::Voxels;
-
-/// What is allowed behind less light than this is as if so much were left, so that f32 holds it: of rays that do not end early.
-const FAINTEST: f64 = 1e-12;
 
 /// The fast kernel for one transfer function of `F` fields.
 pub(super) struct Stream<'a, V, T, D, const F: usize> {
@@ -135,9 +133,8 @@ where
         let mut waiting = 0..rays.len();
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
-        let [by_absorption, per_ray] = Budget::of_pieces(stream.frame.tolerance);
-        let mut allowance = Allowance::new(by_absorption);
-        let mut parts = shaded::Parts::<F>::new();
+        let mut allowance = Allowance::new(Budget::of_pieces(stream.frame.tolerance));
+        let mut unfinished = shaded::Waiting::<F>::new();
         loop {
             for (seat, ray) in seated.iter_mut().enumerate() {
                 if let Some((number, _)) = *ray
@@ -186,28 +183,20 @@ where
             );
             if let Some(lighting) = &stream.lighting {
                 for (seat, _) in seated.iter().enumerate().filter(|(_, ray)| ray.is_some()) {
-                    // What is behind counts the less the less light gets there.
                     let light = fronts.get(seat);
-                    let transmittance = light.transmittance.max(FAINTEST);
-                    let counts = transmittance / walks.per_length_mm(seat);
-                    allowance.per_mm[seat] = (per_ray / counts) as f32;
-                    let left = light.left(walks.done(seat)) / transmittance;
-                    allowance.per_cell[seat] = (left.max(0.0) / STEPS as f64) as f32;
-                    if let Some(estimate) = &stream.estimate {
-                        allowance.estimate(seat, estimate, transmittance);
-                    }
+                    let left = light.left(walks.done(seat));
+                    allowance.share(seat, light.transmittance, walks.per_length_mm(seat), left, stream.estimate);
                 }
-                let (passed, voxels, seen, allowance) = (&passed, &stream.voxels, &seen, &allowance);
-                let scenery = Scenery { passed, voxels, lighting, seen, allowance, harm_per_mm };
+                let (voxels, seen, allowance) = (&stream.voxels, &seen, &allowance);
+                let scenery = Scenery { voxels, lighting, seen, allowance, harm_per_mm };
                 if stream.estimate.is_none() {
                     lit::<L, V, F>(&whole, &stream.function, &scenery, &mut results);
                     lit::<L, V, F>(&cut, &stream.function, &scenery, &mut results);
                 } else {
                     let scenery = shaded::Scenery::<V> { voxels, lighting, seen, allowance, harm_per_mm };
-                    shaded::whole::<L, V, F>(&whole, &stream.function, &scenery, &mut parts, &mut results);
-                    shaded::cut::<L, V, F>(&cut, &stream.function, &scenery, &mut parts, &mut results);
-                    let shown = [&whole, &cut];
-                    shaded::halved::<L, V, F>(shown, &stream.function, &scenery, &mut parts, &mut results);
+                    shaded::whole::<L, V, F>(&whole, &stream.function, &scenery, &mut unfinished, &mut results);
+                    shaded::cut::<L, V, F>(&cut, &stream.function, &scenery, &mut unfinished, &mut results);
+                    shaded::halved::<L, V, F>(&stream.function, &scenery, &mut unfinished, &mut results);
                 }
             } else {
                 pieces::whole::<L, F>(&whole, &stream.function, &mut results);

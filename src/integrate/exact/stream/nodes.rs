@@ -108,25 +108,29 @@ impl Lighting {
         for (n, color) in self.colors.iter().enumerate().take(LIGHTS) {
             let mut kink = L::ZERO;
             let mut before = L::ZERO;
+            let (mut facings, mut shines) = ([L::ZERO; NODES], [L::ZERO; NODES]);
             for i in 0..NODES {
                 let cosine = dot(&normals[i], &lights.towards[n]);
                 let shine = if self.are_at_the_eye { cosine } else { dot(&normals[i], &lights.half[n]) };
-                let (facing, shine) = if self.two_sided {
-                    (cosine.abs(), shine.abs())
+                (facings[i], shines[i]) = if self.two_sided {
+                    (cosine.abs(), shine.abs().min(L::ONE))
                 } else {
-                    (cosine.max(L::ZERO), shine.max(L::ZERO))
+                    (cosine.max(L::ZERO), shine.max(L::ZERO).min(L::ONE))
                 };
-                found.lambert[n][i] = number(self.diffuse) * (fades[i] * facing);
-                if self.specular != 0.0 {
-                    let gloss = number(self.specular) * (fades[i] * power(shine.min(L::ONE), self.shininess));
-                    found.gloss[n][i] = L::select(L::ZERO.lt(facing), gloss, L::ZERO);
-                }
+                found.lambert[n][i] = number(self.diffuse) * (fades[i] * facings[i]);
                 if i > 0 {
                     // Between nodes on two sides of a light lies a kink.
                     let changes = (before * cosine).lt(L::ZERO);
                     kink += L::select(changes, (before - cosine).abs(), L::ZERO);
                 }
                 before = cosine;
+            }
+            if self.specular != 0.0 {
+                let powers = power(shines, self.shininess);
+                for i in 0..NODES {
+                    let gloss = number(self.specular) * (fades[i] * powers[i]);
+                    found.gloss[n][i] = L::select(L::ZERO.lt(facings[i]), gloss, L::ZERO);
+                }
             }
             found.deviation += number(brightest(color)) * (smooth + number(OF_KINK * of_lambert) * kink);
         }

@@ -1,12 +1,11 @@
 //! Cells between the steps of a round.
 
 use super::voxels::Corners;
-use super::walk::RAYS;
 use crate::math::bernstein::Cubic;
 use crate::simd::{Ints, Lanes, Mask};
 
-/// Cells that a round works off together: enough to fill registers, few enough to stay in the first-level cache.
-pub(super) const CELLS: usize = 256;
+/// Cells that a round works off together: enough to fill registers, few enough that little is looked at behind opaque ones.
+pub(super) const CELLS: usize = 512;
 
 /// Room for a whole register after the last cell.
 pub(super) const ROOM: usize = CELLS + 16;
@@ -15,29 +14,15 @@ pub(super) const ROOM: usize = CELLS + 16;
 /// its step. What other slots have is left from earlier rounds.
 #[derive(Debug)]
 pub(super) struct Passed {
-    /// Place in memory of the lower corner.
-    pub(super) base: [i32; CELLS],
     /// Lower corner, voxel indices.
     pub(super) cell: [[i32; CELLS]; 3],
-    /// Entry and exit, in `[0, 1]³` of the cell.
-    pub(super) from: [[f32; CELLS]; 3],
-    pub(super) to: [[f32; CELLS]; 3],
-    /// Which ray, by its seat.
-    pub(super) seat: [i32; CELLS],
     /// Where the ray leaves the cell, mm from where it entered the volume.
     pub(super) exit_mm: [f32; CELLS],
 }
 
 impl Passed {
     pub(super) fn new() -> Self {
-        Passed {
-            base: [0; CELLS],
-            cell: [[0; CELLS]; 3],
-            from: [[0.0; CELLS]; 3],
-            to: [[0.0; CELLS]; 3],
-            seat: std::array::from_fn(|slot| (slot % RAYS) as i32),
-            exit_mm: [0.0; CELLS],
-        }
+        Passed { cell: [[0; CELLS]; 3], exit_mm: [0.0; CELLS] }
     }
 }
 
@@ -53,7 +38,7 @@ pub(super) struct Shown<const F: usize> {
     /// Length, mm.
     pub(super) length_mm: [f32; ROOM],
     /// Where the cells are, in lit scenes.
-    pub(super) way: Ways<ROOM>,
+    pub(super) way: Ways,
 }
 
 impl<const F: usize> Shown<F> {
@@ -108,20 +93,20 @@ pub(super) struct Way<L: Lanes> {
     pub(super) to: [L; 3],
 }
 
-/// Ways through `N` cells.
+/// Ways through cells.
 #[derive(Debug)]
-pub(super) struct Ways<const N: usize> {
-    base: [i32; N],
-    cell: [[i32; N]; 3],
-    seat: [i32; N],
-    from: [[f32; N]; 3],
-    to: [[f32; N]; 3],
+pub(super) struct Ways {
+    base: [i32; ROOM],
+    cell: [[i32; ROOM]; 3],
+    seat: [i32; ROOM],
+    from: [[f32; ROOM]; 3],
+    to: [[f32; ROOM]; 3],
 }
 
-impl<const N: usize> Ways<N> {
+impl Ways {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Ways { base: [0; N], cell: [[0; N]; 3], seat: [0; N], from: [[0.0; N]; 3], to: [[0.0; N]; 3] }
+        Ways { base: [0; ROOM], cell: [[0; ROOM]; 3], seat: [0; ROOM], from: [[0.0; ROOM]; 3], to: [[0.0; ROOM]; 3] }
     }
 
     #[inline(always)]
@@ -132,18 +117,6 @@ impl<const N: usize> Ways<N> {
             way.corners.cell[a].compress(chosen).store(&mut self.cell[a][at..]);
             way.from[a].compress(chosen).store(&mut self.from[a][at..]);
             way.to[a].compress(chosen).store(&mut self.to[a][at..]);
-        }
-    }
-
-    /// Copies one way of others to place `to`.
-    #[inline(always)]
-    pub(super) fn copy<const M: usize>(&mut self, to: usize, others: &Ways<M>, place: usize) {
-        self.base[to] = others.base[place];
-        self.seat[to] = others.seat[place];
-        for a in 0..3 {
-            self.cell[a][to] = others.cell[a][place];
-            self.from[a][to] = others.from[a][place];
-            self.to[a][to] = others.to[a][place];
         }
     }
 

@@ -3,11 +3,12 @@
 //! Most pieces need no halving. Those that do wait in a list, so that registers are full of them too.
 
 use super::function::Function;
-use super::light::{LIGHTS, Lighting, Lights, Seen};
+use super::light::{Lighting, Lights, Seen};
 use super::lit::Allowance;
 use super::nodes::{AtNodes, Powers, powers};
+use super::parts::{Part, Parts};
 use super::pieces::{Runs, load_fields, put};
-use super::queue::{Results, Shown, Way, Ways};
+use super::queue::{Results, Shown, Way};
 use super::voxels::Voxels;
 use crate::field::Voxel;
 use crate::integrate::exact::piece::Integral;
@@ -85,29 +86,21 @@ impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
             let corners = self.voxels.corners::<L>(way.corners.base);
             self.voxels.gradients(&way.corners, &corners)
         };
-        let mut lights = Lights { towards: [[L::ZERO; 3]; LIGHTS], half: [[L::ZERO; 3]; LIGHTS] };
-        for n in 0..self.lighting.lights() {
-            for a in 0..3 {
-                lights.towards[n][a] = L::pick16(&self.seen.towards[n][a], way.seat);
-                if !self.lighting.are_at_the_eye {
-                    lights.half[n][a] = L::pick16(&self.seen.half[n][a], way.seat);
-                }
-            }
-        }
+        let lights = self.seen.lights(self.lighting, way.seat);
         let gradient = each(
             #[inline(always)]
             |a| powers(&trilinear_along(&gradients[a], way.from, way.to)),
         );
-        let variance = L::pick16(&self.allowance.variance, way.seat);
-        let largest_square = L::pick16(&self.allowance.largest_square, way.seat);
-        Sight { gradient, lights, variance, error_per_mm: L::pick16(&self.allowance.per_mm, way.seat), largest_square }
+        let variance = L::pick32(&self.allowance.variance, way.seat);
+        let largest_square = L::pick32(&self.allowance.largest_square, way.seat);
+        Sight { gradient, lights, variance, error_per_mm: L::pick32(&self.allowance.per_mm, way.seat), largest_square }
     }
 
     /// Whether the proven error of a piece of this length is what it may be, its transmittance aside.
     #[inline(always)]
-    fn allows<L: Lanes>(&self, sight: &Sight<L>, piece: &Integral<L>, length_mm: L) -> L::Mask {
+    fn allows<L: Lanes>(&self, error_per_mm: L, piece: &Integral<L>, length_mm: L) -> L::Mask {
         let by_absorption = L::from_f64(f64::from(self.allowance.by_absorption));
-        piece.error.le(by_absorption * piece.absorbed + sight.error_per_mm * length_mm)
+        piece.error.le(by_absorption * piece.absorbed + error_per_mm * length_mm)
     }
 
     /// Standard deviation of what the nodes of a piece miss.
@@ -117,58 +110,17 @@ impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
     }
 }
 
-/// Pieces of which more nodes are wanted, by the place of their cells among those shown.
+/// Pieces of which more nodes are wanted.
 #[derive(Debug)]
-pub(super) struct Parts<const F: usize> {
-    waiting: Vec<Part<F>>,
+pub(super) struct Waiting<const F: usize> {
+    parts: Parts<F>,
+    /// First and second halves of these that are to be halved again.
+    halves: [Parts<F>; 2],
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Part<const F: usize> {
-    place: usize,
-    is_whole: bool,
-    ends: [f32; 2],
-    interval: [i32; F],
-    /// From the front of the cell to the front of the piece.
-    transmittance: f32,
-    /// What may be missed.
-    allowed: f32,
-}
-
-impl<const F: usize> Parts<F> {
+impl<const F: usize> Waiting<F> {
     pub(super) fn new() -> Self {
-        Parts { waiting: Vec::new() }
-    }
-
-    /// Puts off the chosen ones of a register's pieces.
-    #[expect(clippy::too_many_arguments, reason = "a piece, and where it is")]
-    #[inline(always)]
-    fn put_off<L: Lanes>(
-        &mut self,
-        chosen: L::Mask,
-        first: usize,
-        is_whole: bool,
-        [from, to]: [L; 2],
-        interval: [L::Ints; F],
-        transmittance: L,
-        allowed: L,
-    ) {
-        let mut numbers = [[0.0; BATCH]; 4];
-        for (lanes, x) in numbers.iter_mut().zip([from, to, transmittance, allowed]) {
-            x.store(lanes);
-        }
-        let mut intervals = [[0; BATCH]; F];
-        for f in 0..F {
-            interval[f].store(&mut intervals[f]);
-        }
-        let mut rest = chosen.bits();
-        while rest != 0 {
-            let k = rest.trailing_zeros() as usize;
-            rest &= rest - 1;
-            let [from, to, transmittance, allowed] = numbers.map(|lanes| lanes[k]);
-            let interval = intervals.map(|lanes| lanes[k]);
-            self.waiting.push(Part { place: first + k, is_whole, ends: [from, to], interval, transmittance, allowed });
-        }
+        Waiting { parts: Parts::new(), halves: [Parts::new(), Parts::new()] }
     }
 }
 
@@ -178,7 +130,7 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
     shown: &Shown<F>,
     function: &impl Function<F>,
     scenery: &Scenery<'_, '_, V>,
-    parts: &mut Parts<F>,
+    waiting: &mut Waiting<F>,
     results: &mut Results,
 ) {
     for first in (0..shown.count).step_by(L::LANES) {
@@ -189,15 +141,27 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
             interval[f] = L::Ints::load(&shown.interval[f][first..]);
         }
         let length_mm = L::load(&shown.length_mm[first..]);
-        let sight = scenery.sight::<L>(&shown.way.load(first), is_cell);
+        let way = shown.way.load(first);
+        let sight = scenery.sight::<L>(&way, is_cell);
         let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, [L::ZERO, L::ONE]);
         let mut integral = function.integrate(interval, &fields, length_mm, &light);
         let missed = scenery.missed(&light, &integral);
         let allowed = sight.may_miss(integral.absorbed);
-        let refused = is_cell.and_not(missed.le(allowed).and(scenery.allows(&sight, &integral, length_mm)));
+        let refused = is_cell.and_not(missed.le(allowed).and(scenery.allows(sight.error_per_mm, &integral, length_mm)));
         let mut missed = missed;
         if refused.any() {
-            parts.put_off(refused, first, true, [L::ZERO, L::ONE], interval, L::ONE, allowed);
+            let part = Part {
+                slot: L::Ints::load(&shown.slot[first..]),
+                seat: way.seat,
+                fields,
+                interval,
+                gradient: sight.gradient,
+                length_mm,
+                ends: [L::ZERO, L::ONE],
+                transmittance: L::ONE,
+                allowed,
+            };
+            waiting.parts.append(refused, &part);
             for radiance in &mut integral.radiance {
                 *radiance = L::select(refused, L::ZERO, *radiance);
             }
@@ -214,7 +178,7 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
     shown: &Shown<F>,
     function: &impl Function<F>,
     scenery: &Scenery<'_, '_, V>,
-    parts: &mut Parts<F>,
+    waiting: &mut Waiting<F>,
     results: &mut Results,
 ) {
     for first in (0..shown.count).step_by(L::LANES) {
@@ -222,7 +186,8 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let length_mm = L::load(&shown.length_mm[first..]);
         let harm = L::from_f64(f64::from(scenery.harm_per_mm)) * length_mm;
         let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
-        let sight = scenery.sight::<L>(&shown.way.load(first), is_cell);
+        let way = shown.way.load(first);
+        let sight = scenery.sight::<L>(&way, is_cell);
         let mut runs = Runs::new(&fields, function);
         let mut total = Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO };
         let (mut transmittance, mut from, mut pieces, mut variance) = (L::ONE, L::ZERO, L::ZERO, L::ZERO);
@@ -239,9 +204,20 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
             let piece = function.integrate(part.interval, &along, piece_mm, &light);
             let missed = transmittance * scenery.missed(&light, &piece);
             let allowed = sight.may_miss(transmittance * piece.absorbed);
-            let refused = open.and_not(missed.le(allowed).and(scenery.allows(&sight, &piece, piece_mm)));
+            let refused = open.and_not(missed.le(allowed).and(scenery.allows(sight.error_per_mm, &piece, piece_mm)));
             if refused.any() {
-                parts.put_off(refused, first, false, ends, part.interval, transmittance, allowed);
+                let part = Part {
+                    slot: L::Ints::load(&shown.slot[first..]),
+                    seat: way.seat,
+                    fields,
+                    interval: part.interval,
+                    gradient: sight.gradient,
+                    length_mm,
+                    ends,
+                    transmittance,
+                    allowed,
+                };
+                waiting.parts.append(refused, &part);
             }
             let counts = L::select(refused, L::ZERO, transmittance);
             for c in 0..3 {
@@ -260,133 +236,73 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
     }
 }
 
-/// Halves the pieces that wait until what each may miss is allowed.
+/// Halves the pieces that wait until what each may miss is allowed. The halves of all are first halves, in order, and then second
+/// ones, so that those of a cell are summed in the same order however many lanes there are.
 #[inline(always)]
 pub(super) fn halved<L: Lanes, V: Voxel + Pairs, const F: usize>(
-    [whole, cut]: [&Shown<F>; 2],
     function: &impl Function<F>,
     scenery: &Scenery<'_, '_, V>,
-    parts: &mut Parts<F>,
+    waiting: &mut Waiting<F>,
     results: &mut Results,
 ) {
-    let mut at = 0;
-    while at < parts.waiting.len() {
-        let count = L::LANES.min(parts.waiting.len() - at);
-        let mut staged = Staged::<F>::new();
-        let mut slots = [0; BATCH];
-        for k in 0..count {
-            let part = parts.waiting[at + k];
-            let shown = if part.is_whole { whole } else { cut };
-            staged.stage(k, &part, shown);
-            slots[k] = shown.slot[part.place] as usize;
-        }
-        let is_part = L::Ints::count().lt(L::Ints::splat(count as i32));
-        let sight = scenery.sight::<L>(&staged.way.load(0), is_part);
-        let fields: [Cubic<L>; F] = each(
-            #[inline(always)]
-            |f| {
-                each(
+    let Waiting { parts, halves } = waiting;
+    while parts.count() > 0 {
+        for first in (0..parts.count()).step_by(L::LANES) {
+            let part = parts.load::<L>(first);
+            let is_part = (L::Ints::count() + splat::<L>(first)).lt(splat::<L>(parts.count()));
+            let [start, end] = part.ends;
+            let middle = L::from_f64(0.5) * (start + end);
+            let is_small = (middle - start).le(L::from_f64(SMALLEST_PIECE));
+            let lights = scenery.seen.lights::<L>(scenery.lighting, part.seat);
+            let error_per_mm = L::pick32(&scenery.allowance.per_mm, part.seat);
+            let mut transmittance = part.transmittance;
+            let mut sums = [L::ZERO; 5];
+            for (ends, halves) in [[start, middle], [middle, end]].into_iter().zip(&mut *halves) {
+                let fields: [Cubic<L>; F] = each(
                     #[inline(always)]
-                    |k| L::load(&staged.fields[f][k]),
-                )
-            },
-        );
-        let mut interval = [L::Ints::splat(0); F];
-        for f in 0..F {
-            interval[f] = L::Ints::load(&staged.interval[f]);
-        }
-        let [start, end, length_mm, mut transmittance, allowed] = each(
-            #[inline(always)]
-            |n| L::load(&staged.numbers[n]),
-        );
-        let middle = L::from_f64(0.5) * (start + end);
-        let is_small = (middle - start).le(L::from_f64(SMALLEST_PIECE));
-        let mut added = [[0.0; BATCH]; 5];
-        let mut sums = [L::ZERO; 5];
-        let mut refused = [0; 2];
-        let mut fronts = [transmittance; 2];
-        for (half, [from, to]) in [[start, middle], [middle, end]].into_iter().enumerate() {
-            let part: [Cubic<L>; F] = each(
-                #[inline(always)]
-                |f| restrict(&fields[f], from, to),
-            );
-            let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, [from, to]);
-            let piece_mm = length_mm * (to - from);
-            let piece = function.integrate(interval, &part, piece_mm, &light);
-            let missed = transmittance * scenery.missed(&light, &piece);
-            let keeps = missed.le(allowed).and(scenery.allows(&sight, &piece, piece_mm));
-            let refuses = is_part.and_not(keeps.or(is_small));
-            refused[half] = refuses.bits();
-            fronts[half] = transmittance;
-            let counts = L::select(refuses, L::ZERO, transmittance);
-            for c in 0..3 {
-                sums[c] += counts * piece.radiance[c];
-            }
-            sums[3] += L::select(refuses, L::ZERO, missed * missed);
-            sums[4] += counts * piece.error;
-            transmittance -= transmittance * piece.absorbed;
-        }
-        for (lanes, sum) in added.iter_mut().zip(sums) {
-            sum.store(lanes);
-        }
-        let mut front_lanes = [[0.0; BATCH]; 2];
-        for (lanes, front) in front_lanes.iter_mut().zip(fronts) {
-            front.store(lanes);
-        }
-        for k in 0..count {
-            for c in 0..3 {
-                results.radiance[c][slots[k]] += added[c][k];
-            }
-            results.variance[slots[k]] += added[3][k];
-            results.error[slots[k]] += added[4][k];
-            results.pieces[slots[k]] += 2.0;
-            let part = parts.waiting[at + k];
-            let [from, to] = part.ends;
-            let middle = 0.5 * (from + to);
-            for (half, ends) in [[from, middle], [middle, to]].into_iter().enumerate() {
-                if refused[half] >> k & 1 == 1 {
-                    parts.waiting.push(Part { ends, transmittance: front_lanes[half][k], ..part });
+                    |f| restrict(&part.fields[f], ends[0], ends[1]),
+                );
+                let light = scenery.lighting.at_nodes(&part.gradient, &lights, ends);
+                let piece_mm = part.length_mm * (ends[1] - ends[0]);
+                let piece = function.integrate(part.interval, &fields, piece_mm, &light);
+                let missed = transmittance * scenery.missed(&light, &piece);
+                let keeps = missed.le(part.allowed).and(scenery.allows(error_per_mm, &piece, piece_mm));
+                let refused = is_part.and_not(keeps.or(is_small));
+                if refused.any() {
+                    halves.append(refused, &Part { ends, transmittance, ..part });
                 }
+                let counts = L::select(refused, L::ZERO, transmittance);
+                for c in 0..3 {
+                    sums[c] += counts * piece.radiance[c];
+                }
+                sums[3] += L::select(refused, L::ZERO, missed * missed);
+                sums[4] += counts * piece.error;
+                transmittance -= transmittance * piece.absorbed;
+            }
+            let mut lanes = [[0.0; BATCH]; 5];
+            for (lanes, sum) in lanes.iter_mut().zip(sums) {
+                sum.store(lanes);
+            }
+            for (k, &slot) in parts.slots(first, L::LANES).iter().enumerate() {
+                let slot = slot as usize;
+                for c in 0..3 {
+                    results.radiance[c][slot] += lanes[c][k];
+                }
+                results.variance[slot] += lanes[3][k];
+                results.error[slot] += lanes[4][k];
+                results.pieces[slot] += 2.0;
             }
         }
-        at += count;
-    }
-    parts.waiting.clear();
-}
-
-/// Pieces side by side.
-struct Staged<const F: usize> {
-    way: Ways<BATCH>,
-    fields: [[[f32; BATCH]; 4]; F],
-    interval: [[i32; BATCH]; F],
-    /// Front, back, length of the cell, transmittance in front, what may be missed.
-    numbers: [[f32; BATCH]; 5],
-}
-
-impl<const F: usize> Staged<F> {
-    #[inline(always)]
-    fn new() -> Self {
-        Staged {
-            way: Ways::new(),
-            fields: [[[0.0; BATCH]; 4]; F],
-            interval: [[0; BATCH]; F],
-            numbers: [[0.0; BATCH]; 5],
-        }
-    }
-
-    #[inline(always)]
-    fn stage(&mut self, k: usize, part: &Part<F>, shown: &Shown<F>) {
-        let place = part.place;
-        self.way.copy(k, &shown.way, place);
-        for f in 0..F {
-            for n in 0..4 {
-                self.fields[f][n][k] = shown.fields[f][n][place];
+        parts.clear();
+        for halves in &mut *halves {
+            if halves.count() > 0 {
+                parts.take(halves);
             }
-            self.interval[f][k] = part.interval[f];
-        }
-        let numbers = [part.ends[0], part.ends[1], shown.length_mm[place], part.transmittance, part.allowed];
-        for (lanes, x) in self.numbers.iter_mut().zip(numbers) {
-            lanes[k] = x;
         }
     }
+}
+
+#[inline(always)]
+fn splat<L: Lanes>(x: usize) -> L::Ints {
+    L::Ints::splat(x as i32)
 }

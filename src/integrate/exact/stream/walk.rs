@@ -1,8 +1,8 @@
 //! Rays on their way through the lattice, side by side: from face to face where something may show, and over everything else
 //! in leaps.
 //!
-//! Distances are counted from where a ray enters the volume, and every crossing is computed from there in f64 and never
-//! accumulated, so that no error grows along the ray; inside a cell coordinates are in `[0, 1]`, and f32 is enough.
+//! Distances are counted from where a ray enters the volume, and crossings are computed from there in f64, so that no error grows
+//! along the ray. A few steps at a time are made in f32 from a place known in f64, and so are the coordinates in cells.
 //!
 //! Every ray is made to rise: along an axis on which it falls, cells and faces are counted downwards from 0, cell `c` being
 //! cell `−1 − c` of the lattice. Aligned blocks of `2^n` cells stay aligned blocks.
@@ -11,10 +11,11 @@ use super::queue::CELLS;
 use crate::field::Chord;
 use crate::integrate::exact::cells::Segment;
 use crate::integrate::occupancy::Occupancy;
-use crate::simd::{Doubles, Ints, Lanes, Mask};
+use crate::simd::{Doubles, Ints, Lanes, Mask, TWO_BATCHES};
 
-/// Rays in flight at a time: as many as the widest register has lanes.
-pub(super) const RAYS: usize = 16;
+/// Rays in flight at a time: twice as many as the widest register has lanes, so that a round has cells for all registers, and still
+/// no ray is walked far behind what may turn out to be opaque.
+pub(super) const RAYS: usize = TWO_BATCHES;
 
 /// Steps of a ray in a round, a cell at most each. No ray's rounds depend on the rays beside it; few, since what lies behind
 /// an opaque cell is looked at in vain.
@@ -47,8 +48,8 @@ pub(super) struct Walks {
     face_zero_mm: [[f64; RAYS]; 3],
     /// The coordinate in a cell of the lattice, in `[0, 1]`, where it is left through the next face, and what it is less per mm
     /// before that.
-    leaves_at: [[f64; RAYS]; 3],
-    less_per_mm: [[f64; RAYS]; 3],
+    leaves_at: [[f32; RAYS]; 3],
+    less_per_mm: [[f32; RAYS]; 3],
     /// -1 where a ray falls, 0 where it rises.
     falls: [[i32; RAYS]; 3],
     /// The last cell before the border.
@@ -66,8 +67,6 @@ pub(super) struct Walks {
     cell: [[i32; RAYS]; 3],
     /// Place in memory of the cell's lower corner.
     base: [i32; RAYS],
-    /// Where each crosses the next face across each axis.
-    next_mm: [[f64; RAYS]; 3],
     dims: [i32; 3],
 }
 
@@ -90,7 +89,6 @@ impl Walks {
             settled_mm: [0.0; RAYS],
             cell: [[0; RAYS]; 3],
             base: [0; RAYS],
-            next_mm: [[0.0; RAYS]; 3],
             dims: dims.map(|n| n as i32),
         }
     }
@@ -119,7 +117,7 @@ impl Walks {
                 self.per_mm[a][seat] = 0.0;
                 self.mm_per[a][seat] = 0.0;
                 self.face_zero_mm[a][seat] = NEVER_MM;
-                self.leaves_at[a][seat] = p.abs() - f64::from(cell);
+                self.leaves_at[a][seat] = (p.abs() - f64::from(cell)) as f32;
                 self.less_per_mm[a][seat] = 0.0;
             } else {
                 self.per_mm[a][seat] = d.abs();
@@ -127,11 +125,10 @@ impl Walks {
                 self.face_zero_mm[a][seat] = -p * self.mm_per[a][seat];
                 self.entry[a][seat] = p + NUDGE;
                 self.leaves_at[a][seat] = if falls { 0.0 } else { 1.0 };
-                self.less_per_mm[a][seat] = d;
+                self.less_per_mm[a][seat] = d as f32;
                 // No ray steps over the border, whatever rounding does.
                 exit_mm = exit_mm.min(self.crossing_mm(seat, a, last_cell + 1));
             }
-            self.next_mm[a][seat] = self.crossing_mm(seat, a, rising + 1);
         }
         self.exit_mm[seat] = exit_mm;
         self.per_length_mm[seat] = 1.0 / exit_mm;
@@ -186,8 +183,14 @@ impl Walks {
         }
         let local = |mm: f64| {
             std::array::from_fn(|a| {
-                let left_mm = self.crossing_mm(seat, a, (cell[a] ^ self.falls[a][seat]) + 1) - mm;
-                (self.leaves_at[a][seat] - left_mm * self.less_per_mm[a][seat]).clamp(0.0, 1.0)
+                let falls = self.falls[a][seat];
+                let left = (self.crossing_mm(seat, a, (cell[a] ^ falls) + 1) - mm) * self.per_mm[a][seat];
+                let x = match (self.per_mm[a][seat] == 0.0, falls) {
+                    (true, _) => self.entry[a][seat].abs() - f64::from(cell[a]),
+                    (_, 0) => 1.0 - left,
+                    _ => left,
+                };
+                x.clamp(0.0, 1.0)
             })
         };
         Segment {
@@ -209,19 +212,22 @@ impl Walks {
     ) {
         self.settled_mm = self.at_mm;
         for first in (0..RAYS).step_by(L::LANES) {
-            let (lines, mut at) = Lines::<L>::load(self, first);
+            let lines = Lines::<L>::load(self, first);
+            let mut at = Cells::<L>::load(self, first);
             let mut cells = [at; AHEAD];
             for n in (0..STEPS).step_by(AHEAD) {
+                lines.settle(&mut at);
                 for passed in &mut cells {
                     lines.step(&mut at, occupancy);
                     *passed = at;
                     lines.go_on(&mut at);
                 }
                 pass(&lines, &cells, first + n * RAYS);
-                if !at.at_mm.lt(lines.exit_mm).any() {
+                if !at.from_mm.lt(at.rest_mm).any() {
                     break;
                 }
             }
+            lines.settle(&mut at);
             at.store(self, first);
         }
     }
@@ -231,36 +237,65 @@ impl Walks {
 #[derive(Clone, Copy)]
 pub(super) struct Cells<L: Lanes> {
     rising: [L::Ints; 3],
-    next_mm: [L::Doubles; 3],
     /// Which rays pass a cell.
     pub(super) passes: L::Mask,
     /// Place in memory of the cell's lower corner.
     pub(super) base: L::Ints,
-    /// Where rays enter and leave the cell, mm from where they entered the volume.
-    pub(super) at_mm: L::Doubles,
-    pub(super) to_mm: L::Doubles,
+    /// From where distances are counted for a few steps, mm from where rays entered the volume.
+    origin_mm: L::Doubles,
+    /// Where rays enter and leave the cell, where they cross the next faces, and where they leave the volume.
+    pub(super) from_mm: L,
+    pub(super) to_mm: L,
+    next_mm: [L; 3],
+    rest_mm: L,
 }
 
 impl<L: Lanes> Cells<L> {
     #[inline(always)]
+    fn load(walks: &Walks, first: usize) -> Self {
+        let nothing = L::Ints::splat(0);
+        let mut cells = Cells {
+            rising: [nothing; 3],
+            passes: nothing.lt(nothing),
+            base: L::Ints::load(&walks.base[first..]),
+            origin_mm: L::Doubles::load(&walks.at_mm[first..]),
+            from_mm: L::ZERO,
+            to_mm: L::ZERO,
+            next_mm: [L::ZERO; 3],
+            rest_mm: L::ONE,
+        };
+        for a in 0..3 {
+            cells.rising[a] = L::Ints::load(&walks.cell[a][first..]);
+        }
+        cells
+    }
+
+    #[inline(always)]
     fn store(&self, walks: &mut Walks, first: usize) {
-        self.at_mm.store(&mut walks.at_mm[first..]);
+        self.origin_mm.store(&mut walks.at_mm[first..]);
         self.base.store(&mut walks.base[first..]);
         for a in 0..3 {
             self.rising[a].store(&mut walks.cell[a][first..]);
-            self.next_mm[a].store(&mut walks.next_mm[a][first..]);
         }
+    }
+
+    /// Where rays leave their cells, mm from where they entered the volume.
+    #[inline(always)]
+    pub(super) fn exit_mm(&self) -> L {
+        L::from_doubles(self.origin_mm) + self.to_mm
     }
 }
 
 /// What does not change along as many rays as a register has lanes.
+#[derive(Clone, Copy)]
 pub(super) struct Lines<L: Lanes> {
     entry: [L::Doubles; 3],
     per_mm: [L::Doubles; 3],
     mm_per: [L::Doubles; 3],
     face_zero_mm: [L::Doubles; 3],
-    leaves_at: [L::Doubles; 3],
-    less_per_mm: [L::Doubles; 3],
+    mm_per_face: [L; 3],
+    leaves_at: [L; 3],
+    less_per_mm: [L; 3],
     falls: [L::Mask; 3],
     last_cell: [L::Ints; 3],
     strides: [L::Ints; 3],
@@ -269,7 +304,7 @@ pub(super) struct Lines<L: Lanes> {
 
 impl<L: Lanes> Lines<L> {
     #[inline(always)]
-    fn load(walks: &Walks, first: usize) -> (Self, Cells<L>) {
+    fn load(walks: &Walks, first: usize) -> Self {
         let (zero, nothing) = (L::Doubles::splat(0.0), L::Ints::splat(0));
         let none = nothing.lt(nothing);
         let mut lines = Lines {
@@ -277,41 +312,46 @@ impl<L: Lanes> Lines<L> {
             per_mm: [zero; 3],
             mm_per: [zero; 3],
             face_zero_mm: [zero; 3],
-            leaves_at: [zero; 3],
-            less_per_mm: [zero; 3],
+            mm_per_face: [L::ZERO; 3],
+            leaves_at: [L::ZERO; 3],
+            less_per_mm: [L::ZERO; 3],
             falls: [none; 3],
             last_cell: [nothing; 3],
             strides: [nothing; 3],
             exit_mm: L::Doubles::load(&walks.exit_mm[first..]),
-        };
-        let mut cells = Cells {
-            rising: [nothing; 3],
-            next_mm: [zero; 3],
-            passes: none,
-            base: L::Ints::load(&walks.base[first..]),
-            at_mm: L::Doubles::load(&walks.at_mm[first..]),
-            to_mm: zero,
         };
         for a in 0..3 {
             lines.entry[a] = L::Doubles::load(&walks.entry[a][first..]);
             lines.per_mm[a] = L::Doubles::load(&walks.per_mm[a][first..]);
             lines.mm_per[a] = L::Doubles::load(&walks.mm_per[a][first..]);
             lines.face_zero_mm[a] = L::Doubles::load(&walks.face_zero_mm[a][first..]);
-            lines.leaves_at[a] = L::Doubles::load(&walks.leaves_at[a][first..]);
-            lines.less_per_mm[a] = L::Doubles::load(&walks.less_per_mm[a][first..]);
+            lines.mm_per_face[a] = L::from_doubles(lines.mm_per[a]);
+            lines.leaves_at[a] = L::load(&walks.leaves_at[a][first..]);
+            lines.less_per_mm[a] = L::load(&walks.less_per_mm[a][first..]);
             lines.falls[a] = L::Ints::load(&walks.falls[a][first..]).lt(nothing);
             lines.last_cell[a] = L::Ints::load(&walks.last_cell[a][first..]);
             lines.strides[a] = L::Ints::load(&walks.strides[a][first..]);
-            cells.rising[a] = L::Ints::load(&walks.cell[a][first..]);
-            cells.next_mm[a] = L::Doubles::load(&walks.next_mm[a][first..]);
         }
-        (lines, cells)
+        lines
+    }
+
+    /// Counts distances from where rays are.
+    #[inline(always)]
+    fn settle(&self, at: &mut Cells<L>) {
+        let at_mm = at.origin_mm + at.from_mm.to_doubles();
+        // Nobody stays a rounding short of the border.
+        at.origin_mm = L::Doubles::select(at.from_mm.lt(at.rest_mm), at_mm, self.exit_mm);
+        at.from_mm = L::ZERO;
+        at.rest_mm = L::from_doubles(self.exit_mm - at.origin_mm);
+        for a in 0..3 {
+            at.next_mm[a] = self.next_mm(at, a);
+        }
     }
 
     /// Leaps, and finds where rays leave the cells they have come to.
     #[inline(always)]
     fn step(&self, at: &mut Cells<L>, occupancy: &Occupancy) {
-        let none = at.at_mm.lt(at.at_mm);
+        let none = at.from_mm.lt(at.from_mm);
         let (mut leapt, mut leaps) = (none, none);
         for _ in 0..LEAPS {
             leaps = self.leap(at, occupancy);
@@ -324,44 +364,46 @@ impl<L: Lanes> Lines<L> {
             self.land(at, leapt);
         }
         let [x, y, z] = at.next_mm;
-        let to_mm = x.min(y).min(z).min(self.exit_mm);
+        let to_mm = x.min(y).min(z).min(at.rest_mm);
         // Where rays are that have just leapt is not known yet; they stay there.
-        at.to_mm = L::Doubles::select(leaps, at.at_mm, to_mm);
-        at.passes = at.at_mm.lt(at.to_mm);
+        at.to_mm = L::select(leaps, at.from_mm, to_mm);
+        at.passes = at.from_mm.lt(at.to_mm);
     }
 
     /// Goes on to the next cells.
     #[inline(always)]
     fn go_on(&self, at: &mut Cells<L>) {
-        let goes_on = at.to_mm.lt(self.exit_mm);
+        let goes_on = at.to_mm.lt(at.rest_mm);
         for a in 0..3 {
             // Across an edge or a corner, along several axes at once.
             let moved = goes_on.and(at.next_mm[a].le(at.to_mm));
             at.rising[a] = L::Ints::select(moved, at.rising[a] + L::Ints::splat(1), at.rising[a]);
             at.base = L::Ints::select(moved, at.base + self.strides[a], at.base);
-            let next_mm = self.crossing_mm(a, at.rising[a] + L::Ints::splat(1));
-            at.next_mm[a] = L::Doubles::select(moved, next_mm, at.next_mm[a]);
+            at.next_mm[a] = L::select(moved, at.next_mm[a] + self.mm_per_face[a], at.next_mm[a]);
         }
-        at.at_mm = at.at_mm.max(at.to_mm);
+        at.from_mm = at.from_mm.max(at.to_mm);
     }
 
     /// Leaps over the empty cubes that rays have come to; says which did.
     #[inline(always)]
     fn leap(&self, at: &mut Cells<L>, occupancy: &Occupancy) -> L::Mask {
         let log2_cells = occupancy.around::<L>(self.cell(at));
-        let is_empty = L::Ints::splat(0).lt(log2_cells).and(at.at_mm.lt(self.exit_mm));
+        let is_empty = L::Ints::splat(0).lt(log2_cells).and(at.from_mm.lt(at.rest_mm));
         if !is_empty.any() {
             return is_empty;
         }
+        let at_mm = at.origin_mm + at.from_mm.to_doubles();
         let mut leaves_mm = self.exit_mm;
         for a in 0..3 {
             let face = at.rising[a].without_low_bits(log2_cells) + log2_cells.power_of_two();
             leaves_mm = leaves_mm.min(self.crossing_mm(a, face));
         }
-        let leaps = is_empty.and(at.at_mm.lt(leaves_mm));
-        at.at_mm = L::Doubles::select(leaps, leaves_mm, at.at_mm);
+        let leaps = is_empty.and(at_mm.lt(leaves_mm));
+        at.origin_mm = L::Doubles::select(leaps, leaves_mm, at.origin_mm);
+        at.from_mm = L::select(leaps, L::ZERO, at.from_mm);
+        at.rest_mm = L::select(leaps, L::from_doubles(self.exit_mm - leaves_mm), at.rest_mm);
         for a in 0..3 {
-            let place = self.entry[a] + at.at_mm * self.per_mm[a];
+            let place = self.entry[a] + leaves_mm * self.per_mm[a];
             let cell = place.floor().to_ints().min(self.last_cell[a]);
             at.rising[a] = L::Ints::select(leaps, cell, at.rising[a]);
         }
@@ -372,8 +414,7 @@ impl<L: Lanes> Lines<L> {
     #[inline(always)]
     fn land(&self, at: &mut Cells<L>, leapt: L::Mask) {
         for a in 0..3 {
-            let next_mm = self.crossing_mm(a, at.rising[a] + L::Ints::splat(1));
-            at.next_mm[a] = L::Doubles::select(leapt, next_mm, at.next_mm[a]);
+            at.next_mm[a] = L::select(leapt, self.next_mm(at, a), at.next_mm[a]);
         }
         let [i, j, k] = self.cell(at);
         // The strides' sizes, whatever their signs.
@@ -392,18 +433,24 @@ impl<L: Lanes> Lines<L> {
         cell
     }
 
-    /// Coordinates in `[0, 1]³` of cells, so many mm from where rays entered the volume.
+    /// Coordinates in `[0, 1]³` of cells, at a distance that is counted as theirs are.
     #[inline(always)]
-    pub(super) fn coordinates(&self, cells: &Cells<L>, at_mm: L::Doubles) -> [L; 3] {
+    pub(super) fn coordinates(&self, cells: &Cells<L>, at_mm: L) -> [L; 3] {
         let mut coordinates = [L::ZERO; 3];
         for a in 0..3 {
             let x = self.leaves_at[a] - (cells.next_mm[a] - at_mm) * self.less_per_mm[a];
-            coordinates[a] = L::from_doubles(x).max(L::ZERO).min(L::ONE);
+            coordinates[a] = x.max(L::ZERO).min(L::ONE);
         }
         coordinates
     }
 
-    /// Where rays cross a face across an axis.
+    /// Where rays cross the next face across an axis.
+    #[inline(always)]
+    fn next_mm(&self, at: &Cells<L>, a: usize) -> L {
+        L::from_doubles(self.crossing_mm(a, at.rising[a] + L::Ints::splat(1)) - at.origin_mm)
+    }
+
+    /// Where rays cross a face across an axis, mm from where they entered the volume.
     #[inline(always)]
     fn crossing_mm(&self, a: usize, face: L::Ints) -> L::Doubles {
         self.face_zero_mm[a] + L::Doubles::from_ints(face) * self.mm_per[a]
