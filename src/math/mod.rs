@@ -1,4 +1,4 @@
-//! Mathematics without a domain: real numbers in two precisions, polynomials in Bernstein form, stable exponentials.
+//! Mathematics without a domain: real numbers in two precisions, polynomials in Bernstein form and by powers, stable exponentials.
 
 mod absorb;
 pub mod bernstein;
@@ -6,6 +6,7 @@ mod each;
 mod number;
 mod opacity;
 mod power;
+pub mod powers;
 mod real;
 pub mod scattering;
 

@@ -7,8 +7,8 @@
 //! standard deviations are estimated, and their squares add up along a ray.
 
 use super::light::{LIGHTS, Lighting, Lights, dot, power};
-use crate::math::bernstein::Cubic;
 use crate::math::each;
+use crate::math::powers::{self, Powers};
 use crate::simd::{Lanes, Mask};
 
 /// Nodes of a piece.
@@ -34,17 +34,6 @@ const OF_TURN_SQUARED: f64 = 0.004;
 const OF_KINK: f64 = 0.012;
 const OF_GLOSS: f64 = 0.003;
 const LARGEST_OF_GLOSS: f64 = 0.03;
-
-/// Powers of `u` with which a cubic is summed.
-pub(super) type Powers<L> = [L; 4];
-
-/// A cubic by powers of its parameter.
-#[inline(always)]
-pub(super) fn powers<L: Lanes>(b: &Cubic<L>) -> Powers<L> {
-    let three = L::from_f64(3.0);
-    let (d0, d1, d2) = (b[1] - b[0], b[2] - b[1], b[3] - b[2]);
-    [b[0], three * d0, three * (d1 - d0), (d2 - d1) - (d1 - d0)]
-}
 
 /// The light on a piece, at its nodes.
 #[derive(Clone, Copy)]
@@ -77,10 +66,7 @@ impl Lighting {
             let u = from + number(PLACES[i]) * length;
             let g: [L; 3] = each(
                 #[inline(always)]
-                |a| {
-                    let [c0, c1, c2, c3] = gradient[a];
-                    ((c3 * u + c2) * u + c1) * u + c0
-                },
+                |a| powers::value(&gradient[a], u),
             );
             let square = dot(&g, &g);
             let vanishes = square.le(L::ZERO);
@@ -126,9 +112,9 @@ impl Lighting {
                 before = cosine;
             }
             if self.specular != 0.0 {
-                let powers = power(shines, self.shininess);
+                let glosses = power(shines, self.shininess);
                 for i in 0..NODES {
-                    let gloss = number(self.specular) * (fades[i] * powers[i]);
+                    let gloss = number(self.specular) * (fades[i] * glosses[i]);
                     found.gloss[n][i] = L::select(L::ZERO.lt(facings[i]), gloss, L::ZERO);
                 }
             }
@@ -150,7 +136,7 @@ mod tests {
     use super::*;
     use crate::integrate::exact::linear::{Linear, drift};
     use crate::integrate::exact::piece::{Integral, Optics};
-    use crate::math::bernstein::{trilinear_along, value};
+    use crate::math::bernstein::{Cubic, trilinear_along, value};
     use crate::scene::{Light, Shading};
 
     fn shading(diffuse: f64, specular: f64, shininess: f64, two_sided: bool) -> Shading {
@@ -211,7 +197,7 @@ mod tests {
         let thin = Optics { emission: [[1e-4_f32; 4]; 3], extinction: [1e-4; 4] };
         for _ in 0..count {
             let g = gradient_along(&mut random, noise);
-            let single = |a: usize| powers(&g[a].map(|x| x as f32));
+            let single = |a: usize| powers::of(&g[a].map(|x| x as f32));
             let light = lighting.at_nodes(&[single(0), single(1), single(2)], &lights(shading), [0.0, 1.0]);
             let integral: Integral<f32> = light.finish::<4, 5>(&thin, 1.0);
             let found = f64::from(integral.radiance[0] / integral.absorbed);
@@ -250,7 +236,7 @@ mod tests {
         let shading = shading(0.7, 0.2, 10.0, true);
         let lighting = Lighting::new(&shading, 1.0).expect("a light that lanes can have");
         let along = DVec3::new(1.0, -2.0, 0.5);
-        let g = [0, 1, 2].map(|a| powers(&[1.0f32, 3.0, 2.0, 5.0].map(|x| x * along[a] as f32)));
+        let g = [0, 1, 2].map(|a| powers::of(&[1.0f32, 3.0, 2.0, 5.0].map(|x| x * along[a] as f32)));
         let light = lighting.at_nodes(&g, &lights(&shading), [0.0, 1.0]);
         assert!(light.deviation < 1e-6, "found {}", light.deviation);
         let (reflected, highlight) = shading.factors(along, RAY);
@@ -275,7 +261,7 @@ mod tests {
             let mut random = random();
             for n in 0..1000 {
                 let g = gradient_along(&mut random, noise);
-                let single = |a: usize| powers(&g[a].map(|x| x as f32));
+                let single = |a: usize| powers::of(&g[a].map(|x| x as f32));
                 let light = lighting.at_nodes(&[single(0), single(1), single(2)], &lights(&shading), [0.0, 1.0]);
                 let mut some = || (0.5 + 0.5 * random()) as f32;
                 let (low, slope) = ([some(), some(), 0.0, some()], [some(), 0.0, some(), some()]);

@@ -2,9 +2,8 @@
 
 use std::array::from_fn;
 
-use super::nodes::Powers;
-use crate::math::bernstein::Cubic;
 use crate::math::each;
+use crate::math::powers::Powers;
 use crate::simd::{BATCH, Ints, Lanes, Mask};
 
 /// Pieces, as many as a register has lanes.
@@ -14,7 +13,7 @@ pub(super) struct Part<L: Lanes, const F: usize> {
     pub(super) slot: L::Ints,
     pub(super) seat: L::Ints,
     /// The fields along the cell, and their intervals in the piece.
-    pub(super) fields: [Cubic<L>; F],
+    pub(super) fields: [Powers<L>; F],
     pub(super) interval: [L::Ints; F],
     /// The gradient along the cell, HU/mm.
     pub(super) gradient: [Powers<L>; 3],

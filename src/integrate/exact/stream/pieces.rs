@@ -6,8 +6,9 @@ use super::light::AsItIs;
 use super::look::ROUNDINGS;
 use super::queue::{Results, Shown};
 use crate::integrate::exact::piece::Integral;
-use crate::math::bernstein::{Cubic, lerp, range, restrict, slope, value};
+use crate::math::bernstein::{Cubic, range};
 use crate::math::each;
+use crate::math::powers::{self, Powers};
 use crate::simd::{Ints, Lanes, Mask, Table};
 
 /// Iterations after which a crossing is not sought any further; bisection alone would be done by then.
@@ -56,7 +57,7 @@ pub(super) fn cut<L: Lanes, const F: usize>(
                 break;
             }
             let part = runs.part(function, from);
-            let along = part.fields(&fields, from, part.to);
+            let along = runs.fields(from, part.to);
             let piece = function.integrate(part.interval, &along, length_mm * (part.to - from), &AsItIs);
             for c in 0..3 {
                 total.radiance[c] += transmittance * piece.radiance[c];
@@ -118,7 +119,7 @@ pub(super) fn put<L: Lanes, const F: usize>(
 /// A field on its way through a cell: from one critical point to the next it is monotone, and passes its intervals in order.
 #[derive(Clone, Copy)]
 pub(super) struct Run<L: Lanes> {
-    cubic: Cubic<L>,
+    powers: Powers<L>,
     /// Critical points, ascending; 1 where there is none.
     critical: [L; 2],
     /// The value where the cell has been passed to.
@@ -154,18 +155,6 @@ pub(super) struct Part<L: Lanes, const F: usize> {
     pub(super) interval: [L::Ints; F],
 }
 
-impl<L: Lanes, const F: usize> Part<L, F> {
-    /// The fields from one place to another.
-    #[inline(always)]
-    pub(super) fn fields(&self, fields: &[Cubic<L>; F], from: L, to: L) -> [Cubic<L>; F] {
-        let mut along = *fields;
-        for f in 0..F {
-            along[f] = restrict(&fields[f], from, to);
-        }
-        along
-    }
-}
-
 impl<L: Lanes, const F: usize> Runs<L, F> {
     #[inline(always)]
     pub(super) fn new(fields: &[Cubic<L>; F], function: &impl Function<F>) -> Self {
@@ -174,6 +163,24 @@ impl<L: Lanes, const F: usize> Runs<L, F> {
             |f| Run::new(fields[f], function.axis(f)),
         );
         Runs { runs, misplaced: L::ONE.lt(L::ZERO) }
+    }
+
+    /// The fields, by powers.
+    #[inline(always)]
+    pub(super) fn powers(&self) -> [Powers<L>; F] {
+        each(
+            #[inline(always)]
+            |f| self.runs[f].powers,
+        )
+    }
+
+    /// The fields from one place to another.
+    #[inline(always)]
+    pub(super) fn fields(&self, from: L, to: L) -> [Cubic<L>; F] {
+        each(
+            #[inline(always)]
+            |f| powers::restrict(&self.runs[f].powers, from, to),
+        )
     }
 
     /// The part that begins at `from`.
@@ -212,19 +219,20 @@ impl<L: Lanes> Run<L> {
     #[inline(always)]
     pub(super) fn new(cubic: Cubic<L>, axis: &Axis) -> Self {
         let critical = critical_points(&cubic);
-        let first_end = value(&cubic, critical[0]);
+        let powers = powers::of(&cubic);
+        let first_end = powers::value(&powers, critical[0]);
         let rises = cubic[0].le(first_end);
         let interval = L::Ints::select(rises, axis.interval(cubic[0]), axis.interval_below(cubic[0]));
         let [low, high] = range(&cubic);
         let rounding = L::from_f64(ROUNDINGS * f64::from(f32::EPSILON)) * low.abs().max(high.abs());
-        Run { cubic, critical, at: cubic[0], interval, rounding }
+        Run { powers, critical, at: cubic[0], interval, rounding }
     }
 
     #[inline(always)]
     pub(super) fn next(&self, axis: &Axis, from: L) -> Next<L> {
         let [first, second] = self.critical;
         let turn = L::select(from.lt(first), first, L::select(from.lt(second), second, L::ONE));
-        let there = value(&self.cubic, turn);
+        let there = powers::value(&self.powers, turn);
         let rises = self.at.le(there);
         let end = L::Ints::select(rises, self.interval + L::Ints::splat(1), self.interval);
         let level = axis.end::<L>(end);
@@ -235,7 +243,7 @@ impl<L: Lanes> Run<L> {
             // Where the function does not jump, a cut that is a little off changes next to nothing.
             let precision = if axis.steep().is_some() { PRECISE } else { ENOUGH };
             let between = Between { from, to: turn, at_from: self.at - level, at_to: there - level };
-            to = L::select(crosses, crossing(&self.cubic, level, rises, crosses, &between, precision), turn);
+            to = L::select(crosses, crossing(&self.powers, level, rises, crosses, &between, precision), turn);
         }
         Next { to, value: L::select(crosses, level, there), crosses, rises, end }
     }
@@ -245,7 +253,7 @@ impl<L: Lanes> Run<L> {
     pub(super) fn is_misplaced(&self, axis: &Axis, next: &Next<L>, to: L, harm: L) -> L::Mask {
         let Some(steep) = axis.steep() else { return L::ONE.lt(L::ZERO) };
         let here = next.to.le(to);
-        let flat = slope(&self.cubic, to).abs().lt(harm * self.rounding);
+        let flat = powers::slope(&self.powers, to).abs().lt(harm * self.rounding);
         let grazes = next.crosses.and(flat).and(is_steep::<L>(steep, next.end));
         // At a turn, either end of the interval may be touched.
         let turns = to.lt(L::ONE).and_not(next.crosses);
@@ -263,7 +271,11 @@ impl<L: Lanes> Run<L> {
         let crossed = here.and(next.crosses);
         let (up, down) = (self.interval + L::Ints::splat(1), self.interval - L::Ints::splat(1));
         self.interval = L::Ints::select(crossed, L::Ints::select(next.rises, up, down), self.interval);
-        self.at = L::select(here, next.value, value(&self.cubic, to));
+        self.at = next.value;
+        // Where another field ends the part.
+        if <L::Mask as Mask>::ALL.and_not(here).any() {
+            self.at = L::select(here, next.value, powers::value(&self.powers, to));
+        }
     }
 }
 
@@ -309,32 +321,28 @@ struct Between<L> {
 /// bracket, begun where the chord crosses.
 #[inline(always)]
 fn crossing<L: Lanes>(
-    b: &Cubic<L>,
+    powers: &Powers<L>,
     level: L,
     rises: L::Mask,
     wanted: L::Mask,
     between: &Between<L>,
     precision: f32,
 ) -> L {
-    let b: Cubic<L> = each(
-        #[inline(always)]
-        |k| b[k] - level,
-    );
+    let [c0, c1, c2, c3] = *powers;
+    let above = [c0 - level, c1, c2, c3];
     let half = L::from_f64(0.5);
     let (mut low, mut high) = (between.from, between.to);
     let chord = low + (high - low) * (between.at_from / (between.at_from - between.at_to));
     let mut u = L::select(is_between(chord, low, high), chord, half * (low + high));
     let mut open = wanted;
     for _ in 0..MOST_ITERATIONS {
-        let (p, q, r) = (lerp(b[0], b[1], u), lerp(b[1], b[2], u), lerp(b[2], b[3], u));
-        let (s, t) = (lerp(p, q, u), lerp(q, r, u));
-        let miss = lerp(s, t, u);
+        let miss = powers::value(&above, u);
         let is_above = L::ZERO.lt(miss);
         // Beyond the crossing if above on the way up, or below on the way down.
         let beyond = is_above.and(rises).or(wanted.and_not(is_above).and_not(rises));
         high = L::select(beyond, u, high);
         low = L::select(beyond, low, u);
-        let newton = u - miss / (L::from_f64(3.0) * (t - s));
+        let newton = u - miss / powers::slope(&above, u);
         // NaN and infinity from a flat place fail the comparison and bisect.
         let next = L::select(is_between(newton, low, high), newton, half * (low + high));
         let moved = L::from_f64(f64::from(precision)).lt((next - u).abs());

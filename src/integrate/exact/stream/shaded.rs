@@ -5,15 +5,16 @@
 use super::function::Function;
 use super::light::{Lighting, Lights, Seen};
 use super::lit::Allowance;
-use super::nodes::{AtNodes, Powers, powers};
+use super::nodes::AtNodes;
 use super::parts::{Part, Parts};
 use super::pieces::{Runs, load_fields, put};
 use super::queue::{Results, Shown, Way};
 use super::voxels::Voxels;
 use crate::field::Voxel;
 use crate::integrate::exact::piece::Integral;
-use crate::math::bernstein::{Cubic, restrict, trilinear_along};
+use crate::math::bernstein::{Cubic, trilinear_along};
 use crate::math::each;
+use crate::math::powers::{self, Powers};
 use crate::simd::{BATCH, Ints, Lanes, Mask, Pairs};
 
 /// A piece is not made shorter than this fraction of a cell; what it may then miss is charged to the estimate.
@@ -89,7 +90,7 @@ impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
         let lights = self.seen.lights(self.lighting, way.seat);
         let gradient = each(
             #[inline(always)]
-            |a| powers(&trilinear_along(&gradients[a], way.from, way.to)),
+            |a| powers::of(&trilinear_along(&gradients[a], way.from, way.to)),
         );
         let variance = L::pick32(&self.allowance.variance, way.seat);
         let largest_square = L::pick32(&self.allowance.largest_square, way.seat);
@@ -153,7 +154,10 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
             let part = Part {
                 slot: L::Ints::load(&shown.slot[first..]),
                 seat: way.seat,
-                fields,
+                fields: each(
+                    #[inline(always)]
+                    |f| powers::of(&fields[f]),
+                ),
                 interval,
                 gradient: sight.gradient,
                 length_mm,
@@ -198,7 +202,7 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
             }
             let part = runs.part(function, from);
             let ends = [from, part.to];
-            let along = part.fields(&fields, from, part.to);
+            let along = runs.fields(from, part.to);
             let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, ends);
             let piece_mm = length_mm * (part.to - from);
             let piece = function.integrate(part.interval, &along, piece_mm, &light);
@@ -209,7 +213,7 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
                 let part = Part {
                     slot: L::Ints::load(&shown.slot[first..]),
                     seat: way.seat,
-                    fields,
+                    fields: runs.powers(),
                     interval: part.interval,
                     gradient: sight.gradient,
                     length_mm,
@@ -260,7 +264,7 @@ pub(super) fn halved<L: Lanes, V: Voxel + Pairs, const F: usize>(
             for (ends, halves) in [[start, middle], [middle, end]].into_iter().zip(&mut *halves) {
                 let fields: [Cubic<L>; F] = each(
                     #[inline(always)]
-                    |f| restrict(&part.fields[f], ends[0], ends[1]),
+                    |f| powers::restrict(&part.fields[f], ends[0], ends[1]),
                 );
                 let light = scenery.lighting.at_nodes(&part.gradient, &lights, ends);
                 let piece_mm = part.length_mm * (ends[1] - ends[0]);
