@@ -50,16 +50,18 @@ class Pellucid:
         """Seconds of the stage `integrate` of a process's only picture: macrocells and all else it needs beyond the voxels."""
         return self.render(*arguments, **options)["seconds"]["integrate"]
 
-    def frames(self, pipeline, integrate):
+    def frames(self, pipeline, integrate, sets=()):
         """The same view twice with one set-up, as VTK renders frame after frame. Gives the second's sidecar, with `seconds` of the
-        frame and `setup_seconds` of all that a process does before it could render one."""
-        first = self.render(pipeline, integrate, self.folder / "frame.png", sets=("views={ cameras: [{}, {}] }",), file="frame-1.png")
+        frame, `first_seconds` of the first, and `setup_seconds` of all that a process does before it could render one."""
+        sets = ("views={ cameras: [{}, {}] }", *sets)
+        first = self.render(pipeline, integrate, self.folder / "frame.png", sets=sets, file="frame-1.png")
         second = read_sidecar(self.folder / "frame-2.png")
         frame = second["seconds"]["integrate"]
         once = first["seconds"]["integrate"] - frame + sum(
             seconds for stage, seconds in first["seconds"].items() if stage not in ("integrate", "encode")
         )
-        return second | {"frame_seconds": frame, "setup_seconds": once}
+        times = {"frame_seconds": frame, "first_seconds": first["seconds"]["integrate"], "setup_seconds": once}
+        return second | times
 
     def largest_difference(self, reference, test):
         """Largest difference of a channel, linear, and how many pixels are above 1/255."""

@@ -5,6 +5,9 @@ use serde::Serialize;
 
 use crate::volume::{Samples, Volume};
 
+/// Voxels that are counted at once; their number fits 32 bits.
+const PART: usize = 1 << 18;
+
 /// How many voxels lie outside the window of the transfer function; they are treated as at its ends.
 ///
 /// The window is fixed and written down, never the volume's own minimum and maximum: one metal clip would move every
@@ -29,7 +32,24 @@ impl Clipped {
         };
         let add = |a: (u64, u64), b: (u64, u64)| (a.0 + b.0, a.1 + b.1);
         let (below, above) = match volume.samples() {
-            Samples::I16(data) => data.par_iter().map(|&v| outside(f64::from(v))).reduce(|| (0, 0), add),
+            Samples::I16(data) => {
+                // Which stored numbers are outside: they are in one piece at either end.
+                let [low_end, high_end] = [i32::from(i16::MIN), i32::from(i16::MAX)];
+                let ends = |is_outside: &dyn Fn(f64) -> bool| {
+                    let is_outside = |&stored: &i32| is_outside(rescale.value(f64::from(stored)));
+                    let below = (low_end..=high_end).take_while(is_outside).count() as i32;
+                    let above = (low_end..=high_end).rev().take_while(is_outside).count() as i32;
+                    [low_end + below, high_end - above]
+                };
+                let within = [ends(&|value| value < low), ends(&|value| value > high)];
+                let count = |part: &[i16]| {
+                    let outside = |[first, last]: [i32; 2]| {
+                        part.iter().map(|&v| u32::from(i32::from(v) < first || last < i32::from(v))).sum::<u32>()
+                    };
+                    (u64::from(outside(within[0])), u64::from(outside(within[1])))
+                };
+                data.par_chunks(PART).map(count).reduce(|| (0, 0), add)
+            }
             // Colours are not put into a window.
             Samples::Rgba8(_) | Samples::Rgba16(_) => (0, 0),
             Samples::F32(data) => data.par_iter().map(|&v| outside(f64::from(v))).reduce(|| (0, 0), add),
@@ -52,5 +72,7 @@ mod tests {
         let samples = Samples::I16(vec![-1, 0, 1, 2, 3]);
         let volume = Volume::new(grid, samples, rescale, Quantity::Hu).expect("a valid volume");
         assert_eq!(Clipped::count(&volume, [6.0, 10.0]), Clipped { below: 1, above: 1, voxels: 5 });
+        assert_eq!(Clipped::count(&volume, [-1e9, 1e9]), Clipped { below: 0, above: 0, voxels: 5 });
+        assert_eq!(Clipped::count(&volume, [20.0, 30.0]), Clipped { below: 5, above: 0, voxels: 5 });
     }
 }

@@ -39,7 +39,7 @@ pub use study::{VtkPeer, study, write_study};
 
 use crate::study::Choice;
 use measure::Stopwatch;
-use sidecar::{LabelsRecord, Made};
+use sidecar::{LabelsRecord, Made, VolumeRecord};
 
 /// What is not written in the pipeline.
 #[derive(Debug, Clone, Default)]
@@ -92,7 +92,7 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Vec
     let (plan, choice) = auto::settled((spec, &info), &scan.volume, plan, options, &mut stopwatch)?;
     let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
     prepare_folder(&plan.output.path)?;
-    let shared = Shared { spec, scan: &scan, labels, choice, clipped };
+    let shared = Shared { spec, scan: &scan, volume: VolumeRecord::from(&scan.volume), labels, choice, clipped };
     let [_, count] = plan.view;
     let views = Views::new(&scan.volume, &plan.scene, &plan.method, schedule(options))?;
     if count == 1 {
@@ -113,6 +113,7 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Vec
 struct Shared<'a> {
     spec: &'a Spec,
     scan: &'a Scan,
+    volume: VolumeRecord,
     labels: Option<LabelsRecord>,
     choice: Option<Choice>,
     clipped: Clipped,
@@ -137,6 +138,7 @@ impl Shared<'_> {
             encode(&rendered.image, &plan.output, &texts(&rendered.statistics.kernel, &pixels_sha256))
         })?;
         let made = Made {
+            volume: self.volume.clone(),
             labels: self.labels.clone(),
             choice: self.choice.clone(),
             clipped: self.clipped,

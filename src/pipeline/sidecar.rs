@@ -132,6 +132,7 @@ pub struct MethodRecord {
 
 /// What a run has made by the time it writes its sidecar.
 pub(super) struct Made<'a> {
+    pub(super) volume: VolumeRecord,
     pub(super) labels: Option<LabelsRecord>,
     pub(super) choice: Option<Choice>,
     pub(super) clipped: Clipped,
@@ -152,7 +153,7 @@ impl Sidecar {
                 &[&["volume", "source"], &["effects", "mask", "source"], &["output"]],
             ),
             plan: without(plan::plan_json(plan), &[&["output", "path"]]),
-            volume: VolumeRecord::from(&scan.volume),
+            volume: made.volume,
             labels: made.labels,
             picture: PictureRecord::new(&plan.output.path, plan.scene.camera.size(), made.pixels_sha256),
             method: MethodRecord::new(plan, made.rendered),

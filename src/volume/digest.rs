@@ -18,6 +18,13 @@ impl Volume {
     pub fn values_sha256(&self) -> String {
         let mut hash = Sha256::new();
         let mut bytes = Vec::with_capacity(CHUNK_VALUES * size_of::<f32>());
+        // Adding 0 makes one zero of the two, so that integers and floats agree.
+        let value = |stored: f64| self.rescale.value(stored) as f32 + 0.0;
+        // Of integers there are fewer than voxels.
+        let values: Vec<f32> = match &self.samples {
+            Samples::I16(_) => (i16::MIN..=i16::MAX).map(|stored| value(stored.into())).collect(),
+            _ => Vec::new(),
+        };
         for start in (0..self.samples.len()).step_by(CHUNK_VALUES) {
             bytes.clear();
             let chunk = start..self.samples.len().min(start + CHUNK_VALUES);
@@ -25,9 +32,10 @@ impl Volume {
             match &self.samples {
                 Samples::Rgba8(data) => data[chunk].as_flattened().iter().for_each(|&c| add(f32::from(c))),
                 Samples::Rgba16(data) => data[chunk].as_flattened().iter().for_each(|&c| add(f32::from(c))),
-                // Adding 0 makes one zero of the two, so that integers and floats agree.
-                Samples::I16(data) => data[chunk].iter().for_each(|&v| add(self.rescale.value(v.into()) as f32 + 0.0)),
-                Samples::F32(data) => data[chunk].iter().for_each(|&v| add(self.rescale.value(v.into()) as f32 + 0.0)),
+                Samples::I16(data) => {
+                    data[chunk].iter().for_each(|&v| add(values[usize::from((v as u16) ^ 0x8000)]));
+                }
+                Samples::F32(data) => data[chunk].iter().for_each(|&v| add(value(v.into()))),
             }
             hash.update(&bytes);
         }

@@ -1,5 +1,7 @@
 //! Stored samples: 16-bit integers where the source allows, f32 only where it needs it; colours with an opacity.
 
+use rayon::prelude::*;
+
 /// Stored samples of a volume, x fastest, then y, then z.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Samples {
@@ -92,24 +94,71 @@ impl Samples {
 
     /// Smallest and largest stored number; `[0, 0]` if empty.
     pub fn range(&self) -> [f64; 2] {
-        fn ends<T: Copy + PartialOrd + Into<f64>>(mut data: impl Iterator<Item = T>) -> [f64; 2] {
-            let Some(first) = data.next() else { return [0.0, 0.0] };
-            let (mut low, mut high) = (first, first);
-            for v in data {
-                if v < low {
-                    low = v;
-                }
-                if v > high {
-                    high = v;
-                }
-            }
-            [low.into(), high.into()]
-        }
         match self {
-            Samples::I16(data) => ends(data.iter().copied()),
-            Samples::F32(data) => ends(data.iter().copied()),
-            Samples::Rgba8(data) => ends(data.iter().map(|texel| texel[3])),
-            Samples::Rgba16(data) => ends(data.iter().map(|texel| texel[3])),
+            Samples::I16(data) => ends(data, |&v| v),
+            Samples::F32(data) => ends(data, |&v| v),
+            Samples::Rgba8(data) => ends(data, |texel| texel[3]),
+            Samples::Rgba16(data) => ends(data, |texel| texel[3]),
         }
+    }
+}
+
+/// Numbers whose ends are sought side by side: enough for the widest register.
+const ABREAST: usize = 64;
+
+/// Samples that a thread looks at in one go.
+const PART: usize = 1 << 18;
+
+/// Smallest and largest of the numbers in samples; `[0, 0]` if there are none.
+fn ends<S: Sync, T>(samples: &[S], number: impl Fn(&S) -> T + Sync) -> [f64; 2]
+where
+    T: Copy + PartialOrd + Into<f64> + Send + Sync,
+{
+    let Some(first) = samples.first().map(&number) else { return [0.0, 0.0] };
+    let of_part = |part: &[S]| {
+        let (mut low, mut high) = ([first; ABREAST], [first; ABREAST]);
+        let rows = part.chunks_exact(ABREAST);
+        for sample in rows.remainder() {
+            (low[0], high[0]) = (least(low[0], number(sample)), most(high[0], number(sample)));
+        }
+        for row in rows {
+            for ((sample, low), high) in row.iter().zip(&mut low).zip(&mut high) {
+                (*low, *high) = (least(*low, number(sample)), most(*high, number(sample)));
+            }
+        }
+        (low.into_iter().fold(first, least), high.into_iter().fold(first, most))
+    };
+    let join = |a: (T, T), b: (T, T)| (least(a.0, b.0), most(a.1, b.1));
+    let (low, high) = samples.par_chunks(PART).map(of_part).reduce(|| (first, first), join);
+    // One zero of the two, whichever came first.
+    [low.into() + 0.0, high.into() + 0.0]
+}
+
+fn least<T: PartialOrd>(a: T, b: T) -> T {
+    if b < a { b } else { a }
+}
+
+fn most<T: PartialOrd>(a: T, b: T) -> T {
+    if b > a { b } else { a }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ends_are_found_wherever_they_are() {
+        for count in [1, 63, 64, 65, PART - 1, PART + 70, 3 * PART + 5] {
+            for at in [0, count / 2, count - 1] {
+                let mut samples: Vec<i16> = (0..count).map(|v| (v % 1000) as i16).collect();
+                samples[at] = -7;
+                let found = Samples::I16(samples.clone()).range();
+                let expected = samples.iter().fold([i16::MAX, i16::MIN], |[a, b], &v| [a.min(v), b.max(v)]);
+                assert_eq!(found, expected.map(f64::from), "{count} samples, the least at {at}");
+                let floats = samples.iter().map(|&v| f32::from(v)).collect();
+                assert_eq!(Samples::F32(floats).range(), found, "{count} samples as floats");
+            }
+        }
+        assert_eq!(Samples::I16(Vec::new()).range(), [0.0, 0.0]);
     }
 }
