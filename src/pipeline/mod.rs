@@ -16,6 +16,7 @@ mod sidecar;
 mod stack;
 mod study;
 
+use std::cell::OnceCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -92,7 +93,7 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Vec
     let (plan, choice) = auto::settled((spec, &info), &scan.volume, plan, options, &mut stopwatch)?;
     let clipped = stopwatch.time("normalise", || Clipped::count(&scan.volume, plan.scene.transfer_function.window()));
     prepare_folder(&plan.output.path)?;
-    let shared = Shared { spec, scan: &scan, volume: VolumeRecord::from(&scan.volume), labels, choice, clipped };
+    let shared = Shared { spec, scan: &scan, volume: OnceCell::new(), labels, choice, clipped };
     let [_, count] = plan.view;
     let views = Views::new(&scan.volume, &plan.scene, &plan.method, schedule(options))?;
     if count == 1 {
@@ -113,7 +114,8 @@ pub fn run(spec: &Spec, options: &Options, progress: Progress<'_>) -> Result<Vec
 struct Shared<'a> {
     spec: &'a Spec,
     scan: &'a Scan,
-    volume: VolumeRecord,
+    /// Made with the first sidecar: hashing takes one thread a while.
+    volume: OnceCell<VolumeRecord>,
     labels: Option<LabelsRecord>,
     choice: Option<Choice>,
     clipped: Clipped,
@@ -138,7 +140,7 @@ impl Shared<'_> {
             encode(&rendered.image, &plan.output, &texts(&rendered.statistics.kernel, &pixels_sha256))
         })?;
         let made = Made {
-            volume: self.volume.clone(),
+            volume: self.volume.get_or_init(|| VolumeRecord::from(&scan.volume)).clone(),
             labels: self.labels.clone(),
             choice: self.choice.clone(),
             clipped: self.clipped,
