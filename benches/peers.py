@@ -86,6 +86,7 @@ def run(options, work):
         facts["sizes"] = measure.picture_sizes(pellucid, pipeline, numbers(options.sizes), 2)
         say("sizes of the volume")
         facts["edges"] = measure.volume_edges(pellucid, work, numbers(options.edges), 2)
+        facts["edge_exponent"] = {name: report.exponent(by) for name, by in facts["edges"].items()}
     facts["minutes"] = (time.perf_counter() - begun) / 60
     return facts, results
 

@@ -50,11 +50,11 @@ class Pellucid:
         """Seconds of the stage `integrate` of a process's only picture: macrocells and all else it needs beyond the voxels."""
         return self.render(*arguments, **options)["seconds"]["integrate"]
 
-    def frames(self, pipeline, integrate, sets=()):
+    def frames(self, pipeline, integrate, sets=(), threads=None):
         """The same view twice with one set-up, as VTK renders frame after frame. Gives the second's sidecar, with `seconds` of the
         frame, `first_seconds` of the first, and `setup_seconds` of all that a process does before it could render one."""
         sets = ("views={ cameras: [{}, {}] }", *sets)
-        first = self.render(pipeline, integrate, self.folder / "frame.png", sets=sets, file="frame-1.png")
+        first = self.render(pipeline, integrate, self.folder / "frame.png", threads=threads, sets=sets, file="frame-1.png")
         second = read_sidecar(self.folder / "frame-2.png")
         frame = second["seconds"]["integrate"]
         once = first["seconds"]["integrate"] - frame + sum(

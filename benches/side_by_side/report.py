@@ -5,6 +5,8 @@ import math
 import os
 import platform
 
+from .measure import FIRST, METHODS
+
 MB = 1e6
 
 
@@ -106,16 +108,16 @@ def targets(facts, results):
     if "memory_2d" in facts:
         times = facts["memory_2d"] / facts["memory_2d_raw"]
         rows.append(("4. Peak memory, 2D, lit", "≤ 2 × raw", f"{times:.2f} ×", times <= 2, None))
-    if "speedup" in facts:
-        found = ", ".join(f"{name} {x:.2f} ×" for name, x in facts["speedup"].items())
-        rows.append(("5. Two threads instead of one", "≥ 1.85 ×", found, min(facts["speedup"].values()) >= 1.85, None))
-    if "edges" in facts:
-        slopes = {name: exponent(by) for name, by in facts["edges"].items()}
-        for what, is_first in (("a frame", False), ("first pictures, every voxel looked at", True)):
-            some = {name: x for name, x in slopes.items() if ("first" in name) == is_first}
-            found = ", ".join(f"{name.split(',')[0]} edge^{x:.2f}" for name, x in some.items())
-            rows.append((f"5. Time by the volume's edge: {what}", "≤ edge^1 from the smallest to the largest", found,
-                         max(some.values()) <= 1, None))
+    for key, what, unit, need, holds in (
+        ("speedup", "Two threads instead of one", "{:.2f} ×", "≥ 1.85 ×", lambda numbers: min(numbers) >= 1.85),
+        ("edge_exponent", "Time by the volume's edge", "edge^{:.2f}", "≤ edge^1 from the smallest to the largest",
+         lambda numbers: max(numbers) <= 1),
+    ):
+        for which, end in (("a frame", ""), ("first pictures, every voxel looked at", FIRST)):
+            some = {name: facts[key][name + end] for name, _ in METHODS if key in facts}
+            if some:
+                found = ", ".join(f"{name} {unit.format(number)}" for name, number in some.items())
+                rows.append((f"5. {what}: {which}", need, found, holds(some.values()), None))
     if "cold" in facts:
         found = f"{facts['cold'][0]:.2f} s"
         rows.append(("8. First frame from a cold start", "< 3 s", found, facts["cold"][0] < 3, None))
@@ -137,7 +139,7 @@ def markdown(facts, results):
     ]
     if "speedup" in facts:
         parts += ["## Threads", "Skull phantom, bone. Time of one thread by that of two: "
-                  + ", ".join(f"{name} {x:.2f}" for name, x in facts["speedup"].items()) + "."]
+                  + "; ".join(f"{name} {x:.2f}" for name, x in facts["speedup"].items()) + "."]
     if "sizes" in facts:
         parts += ["## Size of the picture", "Skull phantom, bone; seconds by width and height in pixels.",
                   by_number("pixels", facts["sizes"])]
