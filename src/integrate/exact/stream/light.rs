@@ -122,9 +122,7 @@ impl Seen {
             }
         }
     }
-}
 
-impl Seen {
     /// The lights as rays see them, by their seats.
     #[inline(always)]
     pub(super) fn lights<L: Lanes>(&self, lighting: &Lighting, seat: L::Ints) -> Lights<L> {

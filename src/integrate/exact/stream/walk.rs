@@ -287,7 +287,6 @@ impl<L: Lanes> Cells<L> {
 }
 
 /// What does not change along as many rays as a register has lanes.
-#[derive(Clone, Copy)]
 pub(super) struct Lines<L: Lanes> {
     entry: [L::Doubles; 3],
     per_mm: [L::Doubles; 3],
