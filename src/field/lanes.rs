@@ -222,5 +222,5 @@ fn trilinear<L: Number>([a, b, c, d]: [[L; 2]; 4], [u, v, w]: [L; 3]) -> L {
 
 #[inline(always)]
 fn lerp<L: Number>(a: L, b: L, t: L) -> L {
-    a + t * (b - a)
+    t.mul_plus(b - a, a)
 }

@@ -200,8 +200,8 @@ impl<'a> Lit<'a> {
             let lit = L::select(is_there, fade * lit, L::ZERO);
             let gloss = L::select(is_there, fade * gloss, L::ZERO);
             for c in 0..3 {
-                reflected[c] += L::splat(lamp.diffuse[c]) * lit;
-                highlight[c] += L::splat(lamp.specular[c]) * gloss;
+                reflected[c] = lit.mul_plus(L::splat(lamp.diffuse[c]), reflected[c]);
+                highlight[c] = gloss.mul_plus(L::splat(lamp.specular[c]), highlight[c]);
             }
         }
         (reflected, highlight)
@@ -228,8 +228,8 @@ impl<'a> Lit<'a> {
                 let shine = self.facing(dot(gradient_per_mm, beam.half) * toward_normal);
                 let gloss = if lit > 0.0 { self.gloss(shine) } else { 0.0 };
                 for c in 0..3 {
-                    reflected[c] += beam.diffuse[c] * (fade * lit);
-                    highlight[c] += beam.specular[c] * (fade * gloss);
+                    reflected[c] = (fade * lit).mul_plus(beam.diffuse[c], reflected[c]);
+                    highlight[c] = (fade * gloss).mul_plus(beam.specular[c], highlight[c]);
                 }
             }
         }
@@ -261,7 +261,7 @@ impl Shader for Lit<'_> {
         gradient: impl FnOnce() -> [f32; 3],
     ) -> Rgbs<f32> {
         let (reflected, highlight) = self.factors(aim, gradient(), |_| 1.0);
-        let shaded = |q: f32, c: usize| q * reflected[c] + extinction * highlight[c];
+        let shaded = |q: f32, c: usize| q.mul_plus(reflected[c], extinction * highlight[c]);
         [shaded(r, 0), shaded(g, 1), shaded(b, 2), extinction]
     }
 }
@@ -300,9 +300,9 @@ impl LaneShader for Lit<'_> {
             |light| splats(aim[light].half),
         );
         [
-            r * reflected[0] + extinction * highlight[0],
-            g * reflected[1] + extinction * highlight[1],
-            b * reflected[2] + extinction * highlight[2],
+            r.mul_plus(reflected[0], extinction * highlight[0]),
+            g.mul_plus(reflected[1], extinction * highlight[1]),
+            b.mul_plus(reflected[2], extinction * highlight[2]),
             extinction,
         ]
     }
@@ -342,7 +342,7 @@ fn splats<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
 
 #[inline(always)]
 fn dot<N: Number>([ax, ay, az]: [N; 3], [bx, by, bz]: [N; 3]) -> N {
-    ax * bx + ay * by + az * bz
+    az.mul_plus(bz, ay.mul_plus(by, ax * bx))
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@
 //! without a constant term, so nothing cancels as τ → 0. Own code rather than the platform's `expm1f`, so that pictures do
 //! not depend on the operating system's mathematics library.
 
+use super::Number;
+
 /// `1 − e^{−τ}` for τ ≥ 0; relative error at most 2e-7 (asserted below), 1 for τ beyond 87.
 #[inline(always)]
 pub fn absorbed_f32(optical_depth: f32) -> f32 {
@@ -13,16 +15,16 @@ pub fn absorbed_f32(optical_depth: f32) -> f32 {
     // ln 2 in two parts, so that k · LN2_HIGH is exact.
     const LN2_HIGH: f32 = 0.693_359_4;
     const LN2_LOW: f32 = -2.121_944_4e-4;
-    let f = (x - k * LN2_HIGH) - k * LN2_LOW;
-    let p = 1.0 / 5040.0 * f + 1.0 / 720.0;
-    let p = p * f + 1.0 / 120.0;
-    let p = p * f + 1.0 / 24.0;
-    let p = p * f + 1.0 / 6.0;
-    let p = p * f + 0.5;
-    let expm1 = (p * f) * f + f;
+    let f = x.minus_product(k, LN2_HIGH).minus_product(k, LN2_LOW);
+    let p = (1.0f32 / 5040.0).mul_plus(f, 1.0 / 720.0);
+    let p = p.mul_plus(f, 1.0 / 120.0);
+    let p = p.mul_plus(f, 1.0 / 24.0);
+    let p = p.mul_plus(f, 1.0 / 6.0);
+    let p = p.mul_plus(f, 0.5);
+    let expm1 = (p * f).mul_plus(f, f);
     // 2^k for k in [-126, 0] by its exponent bits.
     let scale = f32::from_bits(((k as i32 + 127) as u32) << 23);
-    -(scale * expm1 + (scale - 1.0))
+    (1.0 - scale).minus_product(scale, expm1)
 }
 
 /// `(1 − e^{−τ}) / τ` for τ ≥ 0; relative error at most 3e-7 (asserted below), 1 at 0.
@@ -30,7 +32,7 @@ pub fn absorbed_f32(optical_depth: f32) -> f32 {
 pub fn mean_transmittance_f32(optical_depth: f32) -> f32 {
     if optical_depth < 1e-4 {
         // Next term τ²/6 is below 2e-9 here.
-        1.0 - 0.5 * optical_depth
+        1.0f32.minus_product(0.5, optical_depth)
     } else {
         absorbed_f32(optical_depth) / optical_depth
     }

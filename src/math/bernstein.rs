@@ -12,7 +12,7 @@ pub type Cubic<R> = [R; 4];
 /// `(1 − t) · a + t · b`, in the form that is exact for `a = b`: a plateau stays on the side of a jump that it is on.
 #[inline(always)]
 pub fn lerp<R: Number>(a: R, b: R, t: R) -> R {
-    a + t * (b - a)
+    t.mul_plus(b - a, a)
 }
 
 /// Smallest and largest coefficient: an enclosure of the polynomial over `[0, 1]`.
@@ -90,7 +90,7 @@ pub fn trilinear_along<R: Number>(corners: &[R; 8], a: [R; 3], b: [R; 3]) -> Cub
 
 #[inline(always)]
 fn mean<R: Number>(p: R, q: R, r: R, third: R) -> R {
-    p + third * ((q - p) + (r - p))
+    third.mul_plus((q - p) + (r - p), p)
 }
 
 /// Product of two cubics, of degree six.
@@ -102,7 +102,8 @@ pub fn product<R: Number>(a: &Cubic<R>, b: &Cubic<R>) -> [R; 7] {
     let mut result = [R::ZERO; 7];
     for (i, &x) in a.iter().enumerate() {
         for (j, &y) in b.iter().enumerate() {
-            result[i + j] += R::from_f64(BINOMIAL_3[i] * BINOMIAL_3[j] / BINOMIAL_6[i + j]) * (x * y);
+            let factor = R::from_f64(BINOMIAL_3[i] * BINOMIAL_3[j] / BINOMIAL_6[i + j]);
+            result[i + j] = factor.mul_plus(x * y, result[i + j]);
         }
     }
     result

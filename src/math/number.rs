@@ -4,7 +4,8 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// What formulas without a branch need: a [`Real`](super::Real), or the lanes of a vector register, each for itself.
 ///
-/// Every operation rounds as IEEE 754 says and nothing is fused, so that a formula gives the same bits in a lane as alone.
+/// Every operation rounds as IEEE 754 says, and none is fused but where the formula says so, so that it gives the same bits in a
+/// lane as alone.
 pub trait Number:
     Copy
     + Default
@@ -26,12 +27,10 @@ pub trait Number:
 
     /// Nearest number to an f64, in every lane.
     fn from_f64(x: f64) -> Self;
-    /// `self · a + b`. Rounded twice: a fused operation is only fast where the machine has one, and the result must not
-    /// depend on that.
-    #[inline(always)]
-    fn mul_plus(self, a: Self, b: Self) -> Self {
-        self * a + b
-    }
+    /// `self · a + b`: in f32 rounded once, in f64, in which only slow twins compute, twice.
+    fn mul_plus(self, a: Self, b: Self) -> Self;
+    /// `self − a · b`, likewise.
+    fn minus_product(self, a: Self, b: Self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
     /// Square root.

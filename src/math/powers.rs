@@ -20,13 +20,13 @@ pub fn of<R: Number>(b: &Cubic<R>) -> Powers<R> {
 /// Value at `u`.
 #[inline(always)]
 pub fn value<R: Number>(&[c0, c1, c2, c3]: &Powers<R>, u: R) -> R {
-    ((c3 * u + c2) * u + c1) * u + c0
+    c3.mul_plus(u, c2).mul_plus(u, c1).mul_plus(u, c0)
 }
 
 /// Derivative at `u`.
 #[inline(always)]
 pub fn slope<R: Number>(&[_, c1, c2, c3]: &Powers<R>, u: R) -> R {
-    (R::from_f64(3.0) * c3 * u + R::from_f64(2.0) * c2) * u + c1
+    (R::from_f64(3.0) * c3).mul_plus(u, R::from_f64(2.0) * c2).mul_plus(u, c1)
 }
 
 /// The same cubic over `[from, to]`, mapped to `[0, 1]`, in Bernstein form.
@@ -37,7 +37,7 @@ pub fn restrict<R: Number>(powers: &Powers<R>, from: R, to: R) -> Cubic<R> {
     // Its terms in the new parameter.
     let constant = value(powers, from);
     let linear = length * slope(powers, from);
-    let square = length * length * (R::from_f64(3.0) * c3 * from + c2);
+    let square = length * length * (R::from_f64(3.0) * c3).mul_plus(from, c2);
     let cube = length * length * length * c3;
     let (a, b) = (third * linear, third * square);
     [constant, constant + a, constant + (a + a + b), constant + (linear + square + cube)]

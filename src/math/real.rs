@@ -50,6 +50,14 @@ impl Number for f32 {
         x as f32
     }
     #[inline(always)]
+    fn mul_plus(self, a: Self, b: Self) -> Self {
+        self.mul_add(a, b)
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        (-a).mul_add(b, self)
+    }
+    #[inline(always)]
     fn absorbed(self) -> Self {
         absorbed_f32(self)
     }
@@ -65,6 +73,14 @@ impl Number for f64 {
     #[inline(always)]
     fn from_f64(x: f64) -> Self {
         x
+    }
+    #[inline(always)]
+    fn mul_plus(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        self - a * b
     }
     #[inline]
     fn absorbed(self) -> Self {

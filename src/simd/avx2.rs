@@ -14,7 +14,7 @@ use crate::math::Number;
 ///
 /// # Safety
 /// The processor must have them.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<F32x8>()
 }
@@ -43,6 +43,8 @@ arithmetic!(
     _mm256_sub_ps,
     _mm256_mul_ps,
     _mm256_div_ps,
+    _mm256_fmadd_ps,
+    _mm256_fnmadd_ps,
     _mm256_min_ps,
     _mm256_max_ps,
     _mm256_sqrt_ps,

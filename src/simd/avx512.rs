@@ -14,7 +14,7 @@ use crate::math::Number;
 ///
 /// # Safety
 /// The processor must have them.
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<F32x16>()
 }
@@ -43,6 +43,8 @@ arithmetic!(
     _mm512_sub_ps,
     _mm512_mul_ps,
     _mm512_div_ps,
+    _mm512_fmadd_ps,
+    _mm512_fnmadd_ps,
     _mm512_min_ps,
     _mm512_max_ps,
     _mm512_sqrt_ps,

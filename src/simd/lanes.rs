@@ -255,15 +255,16 @@ pub(super) fn absorbed<L: Lanes>(optical_depth: L) -> L {
     let constant = L::from_f64;
     let x = -(constant(87.0).min(optical_depth));
     let k = (x * constant(f64::from(std::f32::consts::LOG2_E))).round();
-    let f = (x - k * constant(f64::from(0.693_359_4_f32))) - k * constant(f64::from(-2.121_944_4e-4_f32));
-    let p = constant(f64::from(1.0_f32 / 5040.0)) * f + constant(f64::from(1.0_f32 / 720.0));
-    let p = p * f + constant(f64::from(1.0_f32 / 120.0));
-    let p = p * f + constant(f64::from(1.0_f32 / 24.0));
-    let p = p * f + constant(f64::from(1.0_f32 / 6.0));
-    let p = p * f + constant(0.5);
-    let expm1 = (p * f) * f + f;
+    let f = x.minus_product(k, constant(f64::from(0.693_359_4_f32)));
+    let f = f.minus_product(k, constant(f64::from(-2.121_944_4e-4_f32)));
+    let p = constant(f64::from(1.0_f32 / 5040.0)).mul_plus(f, constant(f64::from(1.0_f32 / 720.0)));
+    let p = p.mul_plus(f, constant(f64::from(1.0_f32 / 120.0)));
+    let p = p.mul_plus(f, constant(f64::from(1.0_f32 / 24.0)));
+    let p = p.mul_plus(f, constant(f64::from(1.0_f32 / 6.0)));
+    let p = p.mul_plus(f, constant(0.5));
+    let expm1 = (p * f).mul_plus(f, f);
     let scale = L::power_of_two(k.to_ints());
-    -(scale * expm1 + (scale - L::ONE))
+    (L::ONE - scale).minus_product(scale, expm1)
 }
 
 /// `(1 − e^{−τ}) / τ` as [`mean_transmittance_f32`](crate::math::mean_transmittance_f32) has it.
@@ -271,5 +272,6 @@ pub(super) fn absorbed<L: Lanes>(optical_depth: L) -> L {
 #[inline(always)]
 pub(super) fn mean_transmittance<L: Lanes>(optical_depth: L) -> L {
     let thin = optical_depth.lt(L::from_f64(f64::from(1e-4_f32)));
-    L::select(thin, L::ONE - L::from_f64(0.5) * optical_depth, absorbed(optical_depth) / optical_depth)
+    let of_thin = L::ONE.minus_product(L::from_f64(0.5), optical_depth);
+    L::select(thin, of_thin, absorbed(optical_depth) / optical_depth)
 }

@@ -6,9 +6,9 @@ use std::str::FromStr;
 /// An instruction set whose registers kernels are instantiated for. The pictures are the same to the bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// One number at a time, on any processor.
+    /// One number at a time, on any processor; slow on one that cannot multiply and add at once.
     Scalar,
-    /// Eight at a time: x86-64 with AVX2.
+    /// Eight at a time: x86-64 with AVX2 and FMA.
     Avx2,
     /// Sixteen at a time: x86-64 with AVX-512 F, BW, DQ and VL.
     Avx512,
@@ -38,10 +38,11 @@ impl Level {
         match self {
             Level::Scalar => true,
             #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => std::arch::is_x86_feature_detected!("avx2"),
+            Level::Avx2 => std::arch::is_x86_feature_detected!("avx2") && has_fma(),
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => {
-                std::arch::is_x86_feature_detected!("avx512f")
+                has_fma()
+                    && std::arch::is_x86_feature_detected!("avx512f")
                     && std::arch::is_x86_feature_detected!("avx512bw")
                     && std::arch::is_x86_feature_detected!("avx512dq")
                     && std::arch::is_x86_feature_detected!("avx512vl")
@@ -70,9 +71,17 @@ impl Level {
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 if self.is_available() => unsafe { super::avx512::run(kernel) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            _ if has_fma() => unsafe { super::scalar::run(kernel) },
             _ => kernel.run::<f32>(),
         }
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_fma() -> bool {
+    std::arch::is_x86_feature_detected!("fma")
 }
 
 impl fmt::Display for Level {

@@ -1,8 +1,8 @@
 //! Vector registers: the same formula for 1, 8 or 16 numbers at a time.
 //!
 //! An algorithm is written once, generic over `Lanes`, and run by `Level::run` with the registers of an instruction set.
-//! No operation is fused and none is approximate, so that every lane of every level has the bits that the scalar level has:
-//! which level runs changes how long a picture takes, never the picture.
+//! No operation is approximate, and the same ones are fused everywhere, so that every lane of every level has the bits that the
+//! scalar level has: which level runs changes how long a picture takes, never the picture.
 //!
 //! This is the only place for `unsafe` in the crate. Its rules: the vector types stay inside the crate, and generic code is
 //! instantiated with them by `Level::run` alone, after the processor was asked; reads by index are clamped to the slice.

@@ -2,7 +2,7 @@
 
 /// Implements [`Number`](crate::math::Number) and its operators for a register of `$lanes` f32, given the intrinsics.
 macro_rules! arithmetic {
-    ($register:ident, $lanes:literal, $raw:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $sqrt:ident, $xor:ident, $and_not:ident, $splat:ident) => {
+    ($register:ident, $lanes:literal, $raw:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $fmadd:ident, $fnmadd:ident, $min:ident, $max:ident, $sqrt:ident, $xor:ident, $and_not:ident, $splat:ident) => {
         impl Default for $register {
             #[inline(always)]
             fn default() -> Self {
@@ -48,6 +48,16 @@ macro_rules! arithmetic {
             fn from_f64(x: f64) -> Self {
                 // SAFETY: as for all registers, see the module.
                 $register(unsafe { $splat(x as f32) })
+            }
+            #[inline(always)]
+            fn mul_plus(self, a: Self, b: Self) -> Self {
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $fmadd(self.0, a.0, b.0) })
+            }
+            #[inline(always)]
+            fn minus_product(self, a: Self, b: Self) -> Self {
+                // SAFETY: as for all registers, see the module.
+                $register(unsafe { $fnmadd(a.0, b.0, self.0) })
             }
             #[inline(always)]
             fn abs(self) -> Self {

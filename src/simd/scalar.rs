@@ -1,7 +1,20 @@
 //! One lane: the twin of every register, on any processor.
 
 use super::lanes::{last_pair, last_quad};
+#[cfg(target_arch = "x86_64")]
+use super::Kernel;
 use super::{BATCH, Doubles, Ints, Lanes, Mask, TWO_BATCHES, Table};
+
+/// Runs a kernel compiled for fused operations, which are calls of a function elsewhere.
+///
+/// # Safety
+/// The processor must have them.
+#[cfg(target_arch = "x86_64")]
+#[expect(unsafe_code, reason = "compiled for instructions that the caller asked the processor for")]
+#[target_feature(enable = "fma")]
+pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<f32>()
+}
 
 impl Lanes for f32 {
     const LANES: usize = 1;

@@ -45,7 +45,7 @@ impl<R: Number> Linear<R> {
     /// Emission or extinction at a distance.
     #[inline(always)]
     pub(super) fn at(&self, component: usize, distance: R) -> R {
-        self.low[component] + self.slope[component] * distance
+        self.slope[component].mul_plus(distance, self.low[component])
     }
 
     /// The integral over a piece of this length.
@@ -66,7 +66,7 @@ impl<R: Number> Linear<R> {
         let middle = scale * (high + low);
         let radiance = each(
             #[inline(always)]
-            |c| m * (length_mm * self.at(c, mean) + self.drift[c] * middle),
+            |c| m * length_mm.mul_plus(self.at(c, mean), self.drift[c] * middle),
         );
         let error = m * (self.largest_drift * (scale * (high - low)));
         Integral { absorbed: depth.absorbed(), radiance, error }

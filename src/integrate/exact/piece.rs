@@ -73,13 +73,13 @@ impl<R: Number, const N: usize> Optics<R, N> {
                 // G at the coefficients between its ends, where it is 0.
                 let (mut low, mut high, mut g) = (R::ZERO, R::ZERO, R::ZERO);
                 for (&q, &s) in q.iter().zip(&self.extinction).take(N - 1) {
-                    g += sigma * q - mean * s;
+                    g = sigma.mul_plus(q, g).minus_product(mean, s);
                     low = low.min(g);
                     high = high.max(g);
                 }
                 let half = R::from_f64(0.5) * scale;
                 error = error.max(half * (high - low));
-                length_mm * mean + half * (high + low)
+                length_mm.mul_plus(mean, half * (high + low))
             },
         );
         let [r, g, b]: [R; 3] = radiance;

@@ -47,7 +47,7 @@ impl<M: Medium> Kernel<'_, M> {
             let walk = Walk { light, samples: 0, fold };
             let way = Way { kernel: self, aim, dims, chord: &chord, stretches: &stretches, around_mm, walk };
             // One number at a time needs no instructions of its own.
-            Some(if M::BY_LANES { self.level.run(way) } else { simd::Kernel::run::<f32>(way) })
+            Some(if M::BY_LANES { self.level.run(way) } else { Level::Scalar.run(way) })
         })
     }
 

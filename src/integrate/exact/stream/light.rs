@@ -148,7 +148,7 @@ pub(super) struct Lights<L> {
 
 #[inline(always)]
 pub(super) fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    a[2].mul_plus(b[2], a[1].mul_plus(b[1], a[0] * b[0]))
 }
 
 #[inline(always)]
@@ -171,7 +171,7 @@ fn at<L: Lanes>(g: &[Cubic<L>; 3], k: usize) -> [L; 3] {
 pub(super) fn along_light<L: Lanes>(g: &[Cubic<L>; 3], l: &[L; 3]) -> Cubic<L> {
     each(
         #[inline(always)]
-        |k| g[0][k] * l[0] + g[1][k] * l[1] + g[2][k] * l[2],
+        |k| dot(&at(g, k), l),
     )
 }
 

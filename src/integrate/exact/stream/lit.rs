@@ -210,11 +210,11 @@ impl<L: Lanes> Sum<L> {
             let counts = under_way.and(accepted);
             let t = L::select(counts, self.transmittance, L::ZERO);
             for c in 0..3 {
-                self.total.radiance[c] += t * piece.radiance[c];
+                self.total.radiance[c] = t.mul_plus(piece.radiance[c], self.total.radiance[c]);
             }
-            self.total.error += t * piece.error;
-            self.total.absorbed += t * piece.absorbed;
-            self.transmittance -= t * piece.absorbed;
+            self.total.error = t.mul_plus(piece.error, self.total.error);
+            self.total.absorbed = t.mul_plus(piece.absorbed, self.total.absorbed);
+            self.transmittance = self.transmittance.minus_product(t, piece.absorbed);
             self.pieces += L::select(under_way, L::ONE, L::ZERO);
             from = L::select(counts, to, from);
             // The error falls with the cube of the length, what is allowed with the length. The next piece probably fares like

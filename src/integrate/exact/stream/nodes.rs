@@ -63,7 +63,7 @@ impl Lighting {
         let (mut normals, mut fades) = ([[L::ZERO; 3]; NODES], [L::ONE; NODES]);
         let (mut turn, mut vanished) = (L::ZERO, L::ZERO.lt(L::ZERO));
         for i in 0..NODES {
-            let u = from + number(PLACES[i]) * length;
+            let u = length.mul_plus(number(PLACES[i]), from);
             let g: [L; 3] = each(
                 #[inline(always)]
                 |a| powers::value(&gradient[a], u),
@@ -87,10 +87,10 @@ impl Lighting {
         let of_lambert = both * self.diffuse;
         let of_gloss = both * self.specular;
         let square = turn * turn;
-        let smooth = number(OF_TURN * of_lambert) * turn
-            + number(OF_TURN_SQUARED * of_lambert) * square
-            + (number(OF_GLOSS * f64::from(self.shininess) * of_gloss) * square)
-                .min(number(LARGEST_OF_GLOSS * of_gloss));
+        let of_gloss = number(OF_GLOSS * f64::from(self.shininess) * of_gloss) * square;
+        let of_gloss = of_gloss.min(number(LARGEST_OF_GLOSS * both * self.specular));
+        let smooth = turn.mul_plus(number(OF_TURN * of_lambert), of_gloss);
+        let smooth = square.mul_plus(number(OF_TURN_SQUARED * of_lambert), smooth);
         for (n, color) in self.colors.iter().enumerate().take(LIGHTS) {
             let mut kink = L::ZERO;
             let mut before = L::ZERO;
@@ -118,7 +118,8 @@ impl Lighting {
                     found.gloss[n][i] = L::select(L::ZERO.lt(facings[i]), gloss, L::ZERO);
                 }
             }
-            found.deviation += number(brightest(color)) * (smooth + number(OF_KINK * of_lambert) * kink);
+            let deviation = kink.mul_plus(number(OF_KINK * of_lambert), smooth);
+            found.deviation = deviation.mul_plus(number(brightest(color)), found.deviation);
         }
         found
     }

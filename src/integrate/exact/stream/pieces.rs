@@ -60,11 +60,11 @@ pub(super) fn cut<L: Lanes, const F: usize>(
             let along = runs.fields(from, part.to);
             let piece = function.integrate(part.interval, &along, length_mm * (part.to - from), &AsItIs);
             for c in 0..3 {
-                total.radiance[c] += transmittance * piece.radiance[c];
+                total.radiance[c] = transmittance.mul_plus(piece.radiance[c], total.radiance[c]);
             }
-            total.error += transmittance * piece.error;
-            total.absorbed += transmittance * piece.absorbed;
-            transmittance -= transmittance * piece.absorbed;
+            total.error = transmittance.mul_plus(piece.error, total.error);
+            total.absorbed = transmittance.mul_plus(piece.absorbed, total.absorbed);
+            transmittance = transmittance.minus_product(transmittance, piece.absorbed);
             pieces += L::select(open, L::ONE, L::ZERO);
             runs.advance(function, &part, part.to, open, harm);
             from = part.to;
@@ -286,7 +286,7 @@ fn critical_points<L: Lanes>(b: &Cubic<L>) -> [L; 2] {
     // d(u) = d0 (1−u)² + 2 d1 u (1−u) + d2 u²  =  a u² + 2 h u + d0.
     let a = (d0 - d1) + (d2 - d1);
     let h = d1 - d0;
-    let discriminant = h * h - a * d0;
+    let discriminant = (h * h).minus_product(a, d0);
     let root = discriminant.max(L::ZERO).sqrt();
     // The stable pair of roots: no difference of nearly equal numbers.
     let q = -(h + L::select(h.lt(L::ZERO), -root, root));

@@ -101,7 +101,7 @@ impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
     #[inline(always)]
     fn allows<L: Lanes>(&self, error_per_mm: L, piece: &Integral<L>, length_mm: L) -> L::Mask {
         let by_absorption = L::from_f64(f64::from(self.allowance.by_absorption));
-        piece.error.le(by_absorption * piece.absorbed + error_per_mm * length_mm)
+        piece.error.le(by_absorption.mul_plus(piece.absorbed, error_per_mm * length_mm))
     }
 
     /// Standard deviation of what the nodes of a piece miss.
@@ -225,12 +225,12 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
             }
             let counts = L::select(refused, L::ZERO, transmittance);
             for c in 0..3 {
-                total.radiance[c] += counts * piece.radiance[c];
+                total.radiance[c] = counts.mul_plus(piece.radiance[c], total.radiance[c]);
             }
-            total.error += counts * piece.error;
+            total.error = counts.mul_plus(piece.error, total.error);
             variance += L::select(refused, L::ZERO, missed * missed);
-            total.absorbed += transmittance * piece.absorbed;
-            transmittance -= transmittance * piece.absorbed;
+            total.absorbed = transmittance.mul_plus(piece.absorbed, total.absorbed);
+            transmittance = transmittance.minus_product(transmittance, piece.absorbed);
             pieces += L::select(open, L::ONE, L::ZERO);
             runs.advance(function, &part, part.to, open, harm);
             from = part.to;
@@ -277,11 +277,11 @@ pub(super) fn halved<L: Lanes, V: Voxel + Pairs, const F: usize>(
                 }
                 let counts = L::select(refused, L::ZERO, transmittance);
                 for c in 0..3 {
-                    sums[c] += counts * piece.radiance[c];
+                    sums[c] = counts.mul_plus(piece.radiance[c], sums[c]);
                 }
                 sums[3] += L::select(refused, L::ZERO, missed * missed);
-                sums[4] += counts * piece.error;
-                transmittance -= transmittance * piece.absorbed;
+                sums[4] = counts.mul_plus(piece.error, sums[4]);
+                transmittance = transmittance.minus_product(transmittance, piece.absorbed);
             }
             let mut lanes = [[0.0; BATCH]; 5];
             for (lanes, sum) in lanes.iter_mut().zip(sums) {

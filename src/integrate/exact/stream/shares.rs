@@ -22,7 +22,7 @@ impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
         for i in 0..NODES {
             let mut depth = L::ZERO;
             for k in 0..N {
-                depth += number(table::<N>().integrals[i][k]) * optics.extinction[k];
+                depth = optics.extinction[k].mul_plus(number(table::<N>().integrals[i][k]), depth);
             }
             transmitted[i] = number(WEIGHTS[i]) * (L::ONE - (length_mm * depth).absorbed());
         }
@@ -32,7 +32,7 @@ impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
             let emitted = shares(&optics.emission[c], &transmitted, unlit.radiance[c]);
             radiance[c] = number(self.lighting.ambient) * unlit.radiance[c];
             for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
-                radiance[c] += number(f64::from(color[c])) * dot_nodes(&emitted, &self.lambert[n]);
+                radiance[c] = dot_nodes(&emitted, &self.lambert[n]).mul_plus(number(f64::from(color[c])), radiance[c]);
             }
         }
         let brightest_unlit = unlit.radiance[0].max(unlit.radiance[1]).max(unlit.radiance[2]);
@@ -41,11 +41,11 @@ impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
             if self.lighting.specular != 0.0 {
                 let gloss = dot_nodes(&absorbed, &self.gloss[n]);
                 for c in 0..3 {
-                    radiance[c] += number(f64::from(color[c])) * gloss;
+                    radiance[c] = gloss.mul_plus(number(f64::from(color[c])), radiance[c]);
                 }
             }
             let varies = brightest_unlit * range(&self.lambert[n]) + unlit.absorbed * range(&self.gloss[n]);
-            drift += number(brightest(color)) * varies;
+            drift = varies.mul_plus(number(brightest(color)), drift);
         }
         let depth = length_mm * (number(1.0 / N as f64) * sum(&optics.extinction));
         Integral { radiance, error: self.error(&unlit, depth, drift), ..unlit }
@@ -61,10 +61,10 @@ impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
         for i in 0..NODES {
             let (mut distance, mut so_far) = (L::ZERO, L::ZERO);
             for k in 0..4 {
-                distance += number(table::<4>().values[i][k]) * linear.distance[k];
-                so_far += number(table::<4>().integrals[i][k]) * linear.distance[k];
+                distance = linear.distance[k].mul_plus(number(table::<4>().values[i][k]), distance);
+                so_far = linear.distance[k].mul_plus(number(table::<4>().integrals[i][k]), so_far);
             }
-            let depth = linear.low[3] * number(PLACES[i]) + linear.slope[3] * so_far;
+            let depth = linear.slope[3].mul_plus(so_far, linear.low[3] * number(PLACES[i]));
             seen[i] = number(WEIGHTS[i]) * (L::ONE - (length_mm * depth).absorbed());
             seen_distance[i] = seen[i] * distance;
         }
@@ -73,7 +73,7 @@ impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
         let per_total: [L; 4] = each(
             #[inline(always)]
             |c| {
-                let total = linear.low[c] * all + linear.slope[c] * all_distance;
+                let total = linear.low[c].mul_plus(all, linear.slope[c] * all_distance);
                 L::select(L::ZERO.lt(total), L::ONE / total, L::ZERO)
             },
         );
@@ -86,20 +86,21 @@ impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
         for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
             let sums = mean.sums(&self.lambert[n]);
             for c in 0..3 {
-                factors[c] += number(f64::from(color[c])) * mean.of(c, &sums, self.lighting.diffuse);
+                let lambert = mean.of(c, &sums, self.lighting.diffuse);
+                factors[c] = lambert.mul_plus(number(f64::from(color[c])), factors[c]);
             }
             let mut varies = brightest_unlit * range(&self.lambert[n]);
             if self.lighting.specular != 0.0 {
                 let gloss = unlit.absorbed * mean.of(3, &mean.sums(&self.gloss[n]), self.lighting.specular);
                 for c in 0..3 {
-                    shine[c] += number(f64::from(color[c])) * gloss;
+                    shine[c] = gloss.mul_plus(number(f64::from(color[c])), shine[c]);
                 }
-                varies += unlit.absorbed * range(&self.gloss[n]);
+                varies = unlit.absorbed.mul_plus(range(&self.gloss[n]), varies);
             }
-            drift += number(brightest(color)) * varies;
+            drift = varies.mul_plus(number(brightest(color)), drift);
         }
         for c in 0..3 {
-            radiance[c] = factors[c] * radiance[c] + shine[c];
+            radiance[c] = factors[c].mul_plus(radiance[c], shine[c]);
         }
         let depth = length_mm * linear.at(3, linear.mean_distance());
         Integral { radiance, error: self.error(&unlit, depth, drift), ..unlit }
@@ -114,7 +115,7 @@ impl<L: Lanes> AtNodes<'_, L> {
         // Where little gets through, the nodes lie behind what is seen.
         let square = depth * depth;
         let shift = (L::from_f64(SHIFT_PER_DEPTH) * square * square).min(L::from_f64(LARGEST_SHIFT));
-        L::from_f64(self.lighting.largest_reflected) * unlit.error + shift * drift
+        shift.mul_plus(drift, L::from_f64(self.lighting.largest_reflected) * unlit.error)
     }
 }
 
@@ -137,7 +138,7 @@ impl<L: Lanes> Mean<'_, L> {
     /// is.
     #[inline(always)]
     fn of(&self, component: usize, [sum, sum_distance]: &[L; 2], largest: f64) -> L {
-        let total = self.linear.low[component] * *sum + self.linear.slope[component] * *sum_distance;
+        let total = self.linear.low[component].mul_plus(*sum, self.linear.slope[component] * *sum_distance);
         (total * self.per_total[component]).max(L::ZERO).min(L::from_f64(largest))
     }
 }
@@ -153,7 +154,7 @@ fn range<L: Lanes>(at: &[L; NODES]) -> L {
 fn dot_nodes<L: Lanes>(a: &[L; NODES], b: &[L; NODES]) -> L {
     let mut sum = a[0] * b[0];
     for i in 1..NODES {
-        sum += a[i] * b[i];
+        sum = a[i].mul_plus(b[i], sum);
     }
     sum
 }
@@ -164,7 +165,7 @@ fn shares<L: Lanes, const N: usize>(polynomial: &[L; N], transmitted: &[L; NODES
     let mut found = [L::ZERO; NODES];
     for i in 0..NODES {
         for k in 0..N {
-            found[i] += L::from_f64(table::<N>().values[i][k]) * polynomial[k];
+            found[i] = polynomial[k].mul_plus(L::from_f64(table::<N>().values[i][k]), found[i]);
         }
         found[i] = transmitted[i] * found[i];
     }

@@ -160,7 +160,8 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
                 #[inline(always)]
                 |c| {
                     let [x, y, z] = per_index;
-                    L::from_f64(m[0][row]) * x[c] + L::from_f64(m[1][row]) * y[c] + L::from_f64(m[2][row]) * z[c]
+                    let z = L::from_f64(m[2][row]) * z[c];
+                    x[c].mul_plus(L::from_f64(m[0][row]), y[c].mul_plus(L::from_f64(m[1][row]), z))
                 },
             );
         }
@@ -189,6 +190,6 @@ fn splat<L: Lanes>(x: usize) -> L::Ints {
 pub(super) fn magnitudes<N: Number>([x, y, z]: &[[N; 8]; 3]) -> [N; 8] {
     each(
         #[inline(always)]
-        |c| (x[c] * x[c] + y[c] * y[c] + z[c] * z[c]).sqrt(),
+        |c| x[c].mul_plus(x[c], y[c].mul_plus(y[c], z[c] * z[c])).sqrt(),
     )
 }

@@ -437,7 +437,7 @@ impl<L: Lanes> Lines<L> {
     pub(super) fn coordinates(&self, cells: &Cells<L>, at_mm: L) -> [L; 3] {
         let mut coordinates = [L::ZERO; 3];
         for a in 0..3 {
-            let x = self.leaves_at[a] - (cells.next_mm[a] - at_mm) * self.less_per_mm[a];
+            let x = self.leaves_at[a].minus_product(cells.next_mm[a] - at_mm, self.less_per_mm[a]);
             coordinates[a] = x.max(L::ZERO).min(L::ONE);
         }
         coordinates

@@ -86,7 +86,7 @@ impl<L: Lanes> Light<L> {
     #[inline(always)]
     pub(super) fn absorb(&mut self, lit: L::Mask, opacity: L) {
         let before = self.transmittance;
-        let after = before.plus(-(before.sum * opacity), before.rest - before.rest * opacity);
+        let after = before.plus(-(before.sum * opacity), before.rest.minus_product(before.rest, opacity));
         self.transmittance = Sum::select(lit, after, before);
     }
 

@@ -66,7 +66,7 @@ impl<L: Lanes> Place<L> {
     /// Where in the cell along an axis, 0 to 1.
     #[inline(always)]
     pub(super) fn fraction(&self, a: usize) -> L {
-        L::from_ints(self.fraction[a]) * L::from_f64(1.0 / (1u64 << 32) as f64) + L::from_f64(0.5)
+        L::from_ints(self.fraction[a]).mul_plus(L::from_f64(1.0 / (1u64 << 32) as f64), L::from_f64(0.5))
     }
 
     /// Steps per voxel along each axis, whatever the direction; 10³⁰ where there is no step.

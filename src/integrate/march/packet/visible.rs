@@ -153,7 +153,7 @@ impl Visible {
         let mut added = [[0.0; BATCH]; 3];
         for c in 0..3 {
             let emission = L::load(&self.share[c][from..]);
-            (emission * reflected[c] + extinction * highlight[c]).store(&mut added[c]);
+            emission.mul_plus(reflected[c], extinction * highlight[c]).store(&mut added[c]);
         }
         for k in 0..count {
             let color = &mut lights[self.piece[from + k] as usize].color;
