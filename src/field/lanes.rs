@@ -117,66 +117,63 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
     /// The gradients, given the lines through the cells, none of which is at the border.
     #[inline(always)]
     pub(crate) fn gradients<L: Lanes>(&self, cells: &Cells<L>, lines: &Lines<L>) -> [L; 3] {
-        let [down, back, _] = self.next_lines::<L>();
-        let none = L::Ints::splat(0);
-        let beyond = [[none - down, down + down], [none - back, back + back]];
-        self.gradients_by(cells, lines, beyond, [[L::ONE; 2]; 3])
+        let [_, down, back] = self.strides.map(|stride| stride as i32);
+        let rows = [-down, back - down, 2 * down, back + 2 * down];
+        let slabs = [-back, down - back, 2 * back, down + 2 * back];
+        let rows = V::pairs_around::<L, 4>(self.voxels, cells.base, rows);
+        let slabs = V::pairs_around::<L, 4>(self.voxels, cells.base, slabs);
+        gradients_by(cells, lines, [rows, slabs], [[L::ONE; 2]; 3])
     }
 
     /// The gradients of cells that may be at the border.
     #[inline(always)]
     pub(crate) fn gradients_at_border<L: Lanes>(&self, cells: &Cells<L>) -> [L; 3] {
         let (none, one, two) = (L::Ints::splat(0), L::Ints::splat(1), L::ONE + L::ONE);
-        let (mut beyond, mut times) = ([[none; 2]; 3], [[L::ONE; 2]; 3]);
+        let (mut steps, mut times) = ([[none; 2]; 3], [[L::ONE; 2]; 3]);
         for a in 0..3 {
             // One step to the neighbours, or none where there is none; differences over one step count twice.
             let stride = L::Ints::splat(self.strides[a] as i32);
             let is_first = cells.corner[a].lt(one);
             let is_last = L::Ints::splat(self.dims[a] as i32 - 3).lt(cells.corner[a]);
-            beyond[a] =
+            steps[a] =
                 [L::Ints::select(is_first, none, none - stride), L::Ints::select(is_last, stride, stride + stride)];
             times[a] = [L::select(is_first, two, L::ONE), L::select(is_last, two, L::ONE)];
         }
         let [down, back, both] = self.next_lines::<L>();
         let (a, b) = (self.line_at_border(cells, none), self.line_at_border(cells, down));
         let (c, d) = (self.line_at_border(cells, back), self.line_at_border(cells, both));
-        self.gradients_by(cells, &[a, b, c, d], [beyond[1], beyond[2]], times)
+        let mut beyond = [[[L::ZERO; 2]; 4]; 2];
+        for (pairs, ([before, after], next)) in beyond.iter_mut().zip([(steps[1], back), (steps[2], down)]) {
+            for (pair, away) in pairs.iter_mut().zip([before, before + next, after, after + next]) {
+                *pair = V::pairs::<L>(self.voxels, cells.base + away);
+            }
+        }
+        gradients_by(cells, &[a, b, c, d], beyond, times)
     }
+}
 
-    /// The gradients by differences of the corners' neighbours, in the order of operations of the scalar definition: `beyond` are
-    /// the distances in memory from the lower corner to the neighbours along j and k, `times` what the differences at the lower
-    /// and the upper corner of each axis are multiplied by.
-    #[inline(always)]
-    fn gradients_by<L: Lanes>(
-        &self,
-        cells: &Cells<L>,
-        [a, b, c, d]: &Lines<L>,
-        [[above, below], [front, behind]]: [[L::Ints; 2]; 2],
-        times: [[L; 2]; 3],
-    ) -> [L; 3] {
-        let [down, back, _] = self.next_lines::<L>();
-        let at = cells.fraction;
-        let base = cells.base;
-        let [near, far] = times[0];
-        let along_i = half(
-            bilinear([(a[2] - a[0]) * near, (b[2] - b[0]) * near, (c[2] - c[0]) * near, (d[2] - d[0]) * near], at),
-            bilinear([(a[3] - a[1]) * far, (b[3] - b[1]) * far, (c[3] - c[1]) * far, (d[3] - d[1]) * far], at),
-            at,
-        );
-        let [a, b, c, d] = [[a[1], a[2]], [b[1], b[2]], [c[1], c[2]], [d[1], d[2]]];
-        let (above_a, above_c) =
-            (V::pairs::<L>(self.voxels, base + above), V::pairs::<L>(self.voxels, base + above + back));
-        let (below_b, below_d) =
-            (V::pairs::<L>(self.voxels, base + below), V::pairs::<L>(self.voxels, base + below + back));
-        let along_j = across([above_a, a, above_c, c], [b, below_b, d, below_d], [times[1], times[1]], at);
-        let (front_a, front_b) =
-            (V::pairs::<L>(self.voxels, base + front), V::pairs::<L>(self.voxels, base + front + down));
-        let (behind_c, behind_d) =
-            (V::pairs::<L>(self.voxels, base + behind), V::pairs::<L>(self.voxels, base + behind + down));
-        let [near, far] = times[2];
-        let along_k = across([front_a, front_b, a, b], [c, d, behind_c, behind_d], [[near; 2], [far; 2]], at);
-        [along_i, along_j, along_k]
-    }
+/// The gradients by differences of the corners' neighbours, in the order of operations of the scalar definition: `beyond` are
+/// the pairs above and below the four lines, and in front of and behind them, `times` what the differences at the lower and the
+/// upper corner of each axis are multiplied by.
+#[inline(always)]
+fn gradients_by<L: Lanes>(
+    cells: &Cells<L>,
+    [a, b, c, d]: &Lines<L>,
+    [[above_a, above_c, below_b, below_d], [front_a, front_b, behind_c, behind_d]]: [[[L; 2]; 4]; 2],
+    times: [[L; 2]; 3],
+) -> [L; 3] {
+    let at = cells.fraction;
+    let [near, far] = times[0];
+    let along_i = half(
+        bilinear([(a[2] - a[0]) * near, (b[2] - b[0]) * near, (c[2] - c[0]) * near, (d[2] - d[0]) * near], at),
+        bilinear([(a[3] - a[1]) * far, (b[3] - b[1]) * far, (c[3] - c[1]) * far, (d[3] - d[1]) * far], at),
+        at,
+    );
+    let [a, b, c, d] = [[a[1], a[2]], [b[1], b[2]], [c[1], c[2]], [d[1], d[2]]];
+    let along_j = across([above_a, a, above_c, c], [b, below_b, d, below_d], [times[1], times[1]], at);
+    let [near, far] = times[2];
+    let along_k = across([front_a, front_b, a, b], [c, d, behind_c, behind_d], [[near; 2], [far; 2]], at);
+    [along_i, along_j, along_k]
 }
 
 /// Between the lines of a cell.

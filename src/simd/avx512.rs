@@ -63,26 +63,41 @@ fn moved(all: __m512, distance: i32) -> __m512 {
     }
 }
 
-/// Indices, which leave a register two at a time.
+/// Four lanes each.
 #[inline(always)]
-fn indices(at: __m512i) -> [usize; 16] {
+fn quarters(all: __m512i) -> [__m128i; 4] {
     // SAFETY: as for all registers, see the module.
     unsafe {
-        let quarters = [
-            _mm512_castsi512_si128(at),
-            _mm512_extracti32x4_epi32::<1>(at),
-            _mm512_extracti32x4_epi32::<2>(at),
-            _mm512_extracti32x4_epi32::<3>(at),
-        ];
-        let mut indices = [0; 16];
-        for (four, quarter) in indices.chunks_exact_mut(4).zip(quarters) {
-            let (low, high) = (_mm_cvtsi128_si64(quarter) as u64, _mm_extract_epi64::<1>(quarter) as u64);
-            four[0] = (low & 0xffff_ffff) as usize;
-            four[1] = (low >> 32) as usize;
-            four[2] = (high & 0xffff_ffff) as usize;
-            four[3] = (high >> 32) as usize;
-        }
-        indices
+        [
+            _mm512_castsi512_si128(all),
+            _mm512_extracti32x4_epi32::<1>(all),
+            _mm512_extracti32x4_epi32::<2>(all),
+            _mm512_extracti32x4_epi32::<3>(all),
+        ]
+    }
+}
+
+/// Indices, which leave a register two at a time.
+#[inline(always)]
+fn indices(four: __m128i) -> [usize; 4] {
+    // SAFETY: as for all registers, see the module.
+    let (low, high) = unsafe { (_mm_cvtsi128_si64(four) as u64, _mm_extract_epi64::<1>(four) as u64) };
+    [(low & 0xffff_ffff) as usize, (low >> 32) as usize, (high & 0xffff_ffff) as usize, (high >> 32) as usize]
+}
+
+/// Two neighbours each, in one read of 32 bits: so many reads take less time than a gather.
+///
+/// # Safety
+/// Both must be there.
+#[inline(always)]
+unsafe fn four_pairs(from: *const i16, places: [usize; 4]) -> __m128i {
+    // SAFETY: the caller's.
+    unsafe {
+        let read = |k: usize| from.add(places[k]).cast::<i32>().read_unaligned();
+        let first = _mm_cvtsi32_si128(read(0));
+        let second = _mm_insert_epi32::<1>(first, read(1));
+        let third = _mm_insert_epi32::<2>(second, read(2));
+        _mm_insert_epi32::<3>(third, read(3))
     }
 }
 
@@ -199,20 +214,51 @@ impl Lanes for F32x16 {
     fn pairs_i16(samples: &[i16], at: I32x16) -> [Self; 2] {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_pair(samples) as i32));
-            // Two neighbours in one read of 32 bits; sixteen reads take less time than a gather.
-            let places = indices(at);
-            let read = |k: usize| samples.as_ptr().add(places[k]).cast::<i32>().read_unaligned();
-            let four = |k: usize| {
-                let first = _mm_cvtsi32_si128(read(k));
-                let second = _mm_insert_epi32::<1>(first, read(k + 1));
-                let third = _mm_insert_epi32::<2>(second, read(k + 2));
-                _mm_insert_epi32::<3>(third, read(k + 3))
-            };
-            let both = _mm512_castsi128_si512(four(0));
-            let both = _mm512_inserti32x4::<1>(both, four(4));
-            let both = _mm512_inserti32x4::<2>(both, four(8));
-            halves(_mm512_inserti32x4::<3>(both, four(12)))
+            let from = samples.as_ptr();
+            let [first, second, third, fourth] = quarters(at);
+            let both = _mm512_castsi128_si512(four_pairs(from, indices(first)));
+            let both = _mm512_inserti32x4::<1>(both, four_pairs(from, indices(second)));
+            let both = _mm512_inserti32x4::<2>(both, four_pairs(from, indices(third)));
+            halves(_mm512_inserti32x4::<3>(both, four_pairs(from, indices(fourth))))
         }
+    }
+    #[inline(always)]
+    fn pairs_around_i16<const N: usize>(samples: &[i16], at: I32x16, away: [i32; N]) -> [[Self; 2]; N] {
+        let (mut least, mut most) = (away[0], away[0]);
+        for n in 1..N {
+            (least, most) = (Ord::min(least, away[n]), Ord::max(most, away[n]));
+        }
+        let mut pairs = [[F32x16::ZERO; 2]; N];
+        let Some(last) = last_pair(samples).checked_sub((most - least) as u32) else {
+            for n in 0..N {
+                pairs[n] = Self::pairs_i16(samples, at + I32x16::splat(away[n]));
+            }
+            return pairs;
+        };
+        unsafe {
+            let at = _mm512_add_epi32(at.0, _mm512_set1_epi32(least));
+            let quarters = quarters(_mm512_min_epu32(at, _mm512_set1_epi32(last as i32)));
+            // Indices leave their register once for all pairs.
+            let mut both = [_mm512_setzero_si512(); N];
+            let from = |n: usize| samples.as_ptr().add((away[n] - least) as usize);
+            let places = indices(quarters[0]);
+            for n in 0..N {
+                both[n] = _mm512_castsi128_si512(four_pairs(from(n), places));
+            }
+            let places = indices(quarters[1]);
+            for n in 0..N {
+                both[n] = _mm512_inserti32x4::<1>(both[n], four_pairs(from(n), places));
+            }
+            let places = indices(quarters[2]);
+            for n in 0..N {
+                both[n] = _mm512_inserti32x4::<2>(both[n], four_pairs(from(n), places));
+            }
+            let places = indices(quarters[3]);
+            for n in 0..N {
+                pairs[n] = halves(_mm512_inserti32x4::<3>(both[n], four_pairs(from(n), places)));
+            }
+        }
+        pairs
     }
     #[inline(always)]
     fn pairs_f32(samples: &[f32], at: I32x16) -> [Self; 2] {
@@ -439,12 +485,18 @@ impl Ints for I32x16 {
     fn bytes(from: &[u8], at: Self) -> Self {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_word(from) as i32));
-            // Sixteen reads take less time than a gather.
-            let mut bytes = [0u8; 16];
-            for (byte, place) in bytes.iter_mut().zip(indices(at)) {
-                *byte = *from.as_ptr().add(place);
-            }
-            I32x16(_mm512_cvtepu8_epi32(_mm_loadu_si128(bytes.as_ptr().cast())))
+            // Sixteen reads take less time than a gather, and words less than bytes put into a register one after the other.
+            let word = |four: __m128i| {
+                let [a, b, c, d] = indices(four).map(
+                    #[inline(always)]
+                    |place| u64::from(*from.as_ptr().add(place)),
+                );
+                (a | b << 8) | (c | d << 8) << 16
+            };
+            let [first, second, third, fourth] = quarters(at);
+            let low = (word(first) | word(second) << 32) as i64;
+            let high = (word(third) | word(fourth) << 32) as i64;
+            I32x16(_mm512_cvtepu8_epi32(_mm_set_epi64x(high, low)))
         }
     }
     #[inline(always)]

@@ -55,6 +55,15 @@ pub(crate) trait Lanes: Number {
     fn pairs_i16(samples: &[i16], at: Self::Ints) -> [Self; 2];
     /// The samples at `at` and at `at + 1`: see [`Pairs`].
     fn pairs_f32(samples: &[f32], at: Self::Ints) -> [Self; 2];
+    /// Those pairs at several distances from `at`.
+    #[inline(always)]
+    fn pairs_around_i16<const N: usize>(samples: &[i16], at: Self::Ints, away: [i32; N]) -> [[Self; 2]; N] {
+        let mut pairs = [[Self::ZERO; 2]; N];
+        for n in 0..N {
+            pairs[n] = Self::pairs_i16(samples, at + Self::Ints::splat(away[n]));
+        }
+        pairs
+    }
     /// The samples from `at` to `at + 3`, as f32: see [`Pairs`].
     fn quads_i16(samples: &[i16], at: Self::Ints) -> [Self; 4];
     /// The samples from `at` to `at + 3`: see [`Pairs`].
@@ -192,6 +201,8 @@ pub(crate) trait Pairs: Sized {
     /// The samples at `at` and at `at + 1`, as f32. Indices at which no pair begins give another pair of the slice, which has
     /// at least two samples and at most 2³¹.
     fn pairs<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 2];
+    /// The pairs at these distances from `at`.
+    fn pairs_around<L: Lanes, const N: usize>(samples: &[Self], at: L::Ints, away: [i32; N]) -> [[L; 2]; N];
     /// The samples from `at` to `at + 3`, as f32; likewise, of a slice of at least four.
     fn quads<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 4];
 }
@@ -200,6 +211,10 @@ impl Pairs for i16 {
     #[inline(always)]
     fn pairs<L: Lanes>(samples: &[i16], at: L::Ints) -> [L; 2] {
         L::pairs_i16(samples, at)
+    }
+    #[inline(always)]
+    fn pairs_around<L: Lanes, const N: usize>(samples: &[i16], at: L::Ints, away: [i32; N]) -> [[L; 2]; N] {
+        L::pairs_around_i16(samples, at, away)
     }
     #[inline(always)]
     fn quads<L: Lanes>(samples: &[i16], at: L::Ints) -> [L; 4] {
@@ -211,6 +226,14 @@ impl Pairs for f32 {
     #[inline(always)]
     fn pairs<L: Lanes>(samples: &[f32], at: L::Ints) -> [L; 2] {
         L::pairs_f32(samples, at)
+    }
+    #[inline(always)]
+    fn pairs_around<L: Lanes, const N: usize>(samples: &[f32], at: L::Ints, away: [i32; N]) -> [[L; 2]; N] {
+        let mut pairs = [[L::ZERO; 2]; N];
+        for n in 0..N {
+            pairs[n] = L::pairs_f32(samples, at + L::Ints::splat(away[n]));
+        }
+        pairs
     }
     #[inline(always)]
     fn quads<L: Lanes>(samples: &[f32], at: L::Ints) -> [L; 4] {

@@ -46,6 +46,7 @@ impl Fronts {
     }
 
     /// Seats a ray.
+    #[inline(always)]
     pub(super) fn enter(&mut self, seat: usize) {
         self.set(seat, &Front::new(self.tolerance));
         self.rest[seat] = 0.0;
@@ -53,6 +54,7 @@ impl Fronts {
     }
 
     /// The light of a ray.
+    #[inline(always)]
     pub(super) fn get(&self, seat: usize) -> Front {
         Front {
             radiance: self.radiance.map(|channel| channel[seat]),
@@ -64,6 +66,7 @@ impl Fronts {
         }
     }
 
+    #[inline(always)]
     fn set(&mut self, seat: usize, light: &Front) {
         for (channel, x) in self.radiance.iter_mut().zip(light.radiance) {
             channel[seat] = x;
@@ -76,6 +79,7 @@ impl Fronts {
     }
 
     /// How a ray ended, if it did.
+    #[inline(always)]
     pub(super) fn ended(&mut self, seat: usize, walks: &Walks) -> Option<Traced> {
         let has_ended = self.goes_on[seat] == 0 || walks.is_over(seat);
         has_ended.then(|| {

@@ -11,6 +11,7 @@
 //! processor, for any number of threads and any order of tiles.
 
 mod axis;
+mod crossing;
 mod front;
 mod function;
 mod light;
@@ -25,6 +26,7 @@ mod shares;
 mod voxels;
 mod walk;
 
+use std::any::Any;
 use std::cell::RefCell;
 
 use glam::DVec3;
@@ -41,11 +43,12 @@ use crate::plan::Bound;
 use crate::scene::{Clip, Ray, Rays};
 use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
+use crossing::Beginnings;
 use front::Fronts;
 use light::Seen;
 use lit::{Allowance, Scenery, lit};
 use look::look;
-use queue::{Passed, Results, Shown};
+use queue::{Passed, ROOM, Results, Shown};
 use walk::{RAYS, Walks};
 
 pub(super) use function::{Function, OfValue, OfValueAndMagnitude};
@@ -86,9 +89,17 @@ where
 
     fn trace_all(&self, rays: &Rays, ended: &mut dyn FnMut(usize, Traced)) {
         thread_local! {
-            static KEPT: RefCell<(Chords, Splits<f64>)> = RefCell::default();
+            static KEPT: RefCell<Option<Box<dyn Any>>> = RefCell::default();
         }
-        KEPT.with_borrow_mut(|(chords, splits)| self.level.run(Rounds { stream: self, rays, chords, ended, splits }));
+        KEPT.with_borrow_mut(|kept| {
+            // Rays may have been traced by functions of another number of fields before.
+            if !kept.as_ref().is_some_and(|kept| kept.is::<Scratch<F>>()) {
+                *kept = Some(Box::new(Scratch::<F>::new()));
+            }
+            if let Some(scratch) = kept.as_mut().and_then(|kept| kept.downcast_mut()) {
+                self.level.run(Rounds { stream: self, rays, ended, scratch });
+            }
+        });
     }
 
     fn bound(&self) -> Bound {
@@ -100,13 +111,42 @@ where
     }
 }
 
+/// What a thread keeps between tiles.
+struct Scratch<const F: usize> {
+    chords: Chords,
+    passed: Passed,
+    /// Cells whose fields stay in one interval, and those that may cross a knot.
+    whole: Shown<F>,
+    cut: Shown<F>,
+    beginnings: Beginnings<F>,
+    gradients: shaded::Gradients,
+    unfinished: shaded::Waiting<F>,
+    results: Results,
+    splits: Splits<f64>,
+}
+
+impl<const F: usize> Scratch<F> {
+    fn new() -> Self {
+        Scratch {
+            chords: Chords::default(),
+            passed: Passed::new(),
+            whole: Shown::new(),
+            cut: Shown::new(),
+            beginnings: Beginnings::new(),
+            gradients: [[[0.0; ROOM]; 4]; 3],
+            unfinished: shaded::Waiting::new(),
+            results: Results::new(),
+            splits: Splits::default(),
+        }
+    }
+}
+
 /// Rays to trace, and where their light goes.
 struct Rounds<'r, 'a, V, T, D, const F: usize> {
     stream: &'r Stream<'a, V, T, D, F>,
     rays: &'r Rays,
-    chords: &'r mut Chords,
     ended: &'r mut dyn FnMut(usize, Traced),
-    splits: &'r mut Splits<f64>,
+    scratch: &'r mut Scratch<F>,
 }
 
 impl<V, T, D, const F: usize> Kernel for Rounds<'_, '_, V, T, D, F>
@@ -120,13 +160,11 @@ where
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Rounds { stream, rays, chords, ended, splits } = self;
+        let Rounds { stream, rays, ended, scratch } = self;
+        let Scratch { chords, passed, whole, cut, beginnings, gradients, unfinished, results, splits } = scratch;
         chords.of(stream.grid, stream.clip, rays);
         let (low, high) = stream.grid.index_bounds();
         let mut walks = Walks::new(stream.voxels.dims());
-        let mut passed = Passed::new();
-        let (mut whole, mut cut) = (Shown::<F>::new(), Shown::<F>::new());
-        let mut results = Results::new();
         let mut fronts = Fronts::new(&stream.frame);
         // Who sits where, and looks where.
         let mut seated: [Option<(usize, DVec3)>; RAYS] = [None; RAYS];
@@ -134,7 +172,6 @@ where
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
         let mut allowance = Allowance::new(Budget::of_pieces(stream.frame.tolerance));
-        let mut unfinished = shaded::Waiting::<F>::new();
         loop {
             for (seat, ray) in seated.iter_mut().enumerate() {
                 if let Some((number, _)) = *ray
@@ -175,9 +212,9 @@ where
                         &stream.voxels,
                         &stream.function,
                         stream.lighting.is_some(),
-                        &mut passed,
-                        &mut whole,
-                        &mut cut,
+                        passed,
+                        whole,
+                        cut,
                     )
                 },
             );
@@ -190,19 +227,20 @@ where
                 let (voxels, seen, allowance) = (&stream.voxels, &seen, &allowance);
                 let scenery = Scenery { voxels, lighting, seen, allowance, harm_per_mm };
                 if stream.estimate.is_none() {
-                    lit::<L, V, F>(&whole, &stream.function, &scenery, &mut results);
-                    lit::<L, V, F>(&cut, &stream.function, &scenery, &mut results);
+                    lit::<L, V, F>(whole, &stream.function, &scenery, results);
+                    lit::<L, V, F>(cut, &stream.function, &scenery, results);
                 } else {
                     let scenery = shaded::Scenery::<V> { voxels, lighting, seen, allowance, harm_per_mm };
-                    shaded::whole::<L, V, F>(&whole, &stream.function, &scenery, &mut unfinished, &mut results);
-                    shaded::cut::<L, V, F>(&cut, &stream.function, &scenery, &mut unfinished, &mut results);
-                    shaded::halved::<L, V, F>(&stream.function, &scenery, &mut unfinished, &mut results);
+                    let function = &stream.function;
+                    shaded::whole::<L, V, F>(whole, function, &scenery, unfinished, results);
+                    shaded::cut::<L, V, F>(cut, function, &scenery, beginnings, gradients, unfinished, results);
+                    shaded::halved::<L, V, F>(function, &scenery, unfinished, results);
                 }
             } else {
-                pieces::whole::<L, F>(&whole, &stream.function, &mut results);
-                pieces::cut::<L, F>(&cut, &stream.function, harm_per_mm, &mut results);
+                pieces::whole::<L, F>(whole, &stream.function, results);
+                pieces::cut::<L, F>(cut, &stream.function, harm_per_mm, beginnings, results);
             }
-            fronts.composite::<L>(&passed, &results, &walks, |seat, slot, light| {
+            fronts.composite::<L>(passed, results, &walks, |seat, slot, light| {
                 let Some((_, direction)) = seated[seat] else { unreachable!("cells belong to rays") };
                 let cell = passed.cell.each_ref().map(|axis| axis[slot]);
                 stream.again(&walks, seat, cell, direction, light, splits);

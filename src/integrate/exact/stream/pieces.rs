@@ -1,6 +1,7 @@
 //! From cubics to light: cuts cells at the knots, and integrates.
 
 use super::axis::Axis;
+use super::crossing::{Beginnings, Crossing, Taken};
 use super::function::Function;
 use super::light::AsItIs;
 use super::look::ROUNDINGS;
@@ -41,36 +42,24 @@ pub(super) fn cut<L: Lanes, const F: usize>(
     shown: &Shown<F>,
     function: &impl Function<F>,
     harm_per_mm: f32,
+    beginnings: &mut Beginnings<F>,
     results: &mut Results,
 ) {
-    for first in (0..shown.count).step_by(L::LANES) {
-        let fields = load_fields::<L, F>(shown, first);
-        let length_mm = L::load(&shown.length_mm[first..]);
-        let harm = L::from_f64(f64::from(harm_per_mm)) * length_mm;
-        let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
-        let mut runs = Runs::new(&fields, function);
-        let mut total = Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO };
-        let (mut transmittance, mut from, mut pieces) = (L::ONE, L::ZERO, L::ZERO);
-        loop {
-            let open = is_cell.and(from.lt(L::ONE));
-            if !open.any() {
-                break;
-            }
-            let part = runs.part(function, from);
-            let along = runs.fields(from, part.to);
-            let piece = function.integrate(part.interval, &along, length_mm * (part.to - from), &AsItIs);
-            for c in 0..3 {
-                total.radiance[c] = transmittance.mul_plus(piece.radiance[c], total.radiance[c]);
-            }
-            total.error = transmittance.mul_plus(piece.error, total.error);
-            total.absorbed = transmittance.mul_plus(piece.absorbed, total.absorbed);
-            transmittance = transmittance.minus_product(transmittance, piece.absorbed);
-            pieces += L::select(open, L::ONE, L::ZERO);
-            runs.advance(function, &part, part.to, open, harm);
-            from = part.to;
+    beginnings.prepare::<L>(shown, function);
+    let harm_per_mm = L::from_f64(f64::from(harm_per_mm));
+    let mut cells = Crossing::<L, F>::new();
+    loop {
+        let open = cells.attend(shown, beginnings, results, |_| ());
+        if !open.any() {
+            break;
         }
-        total.error = runs.checked(total.error);
-        put(results, shown, first, &total, L::ZERO, pieces);
+        let from = cells.from;
+        let part = cells.runs.part(function, from);
+        let along = cells.runs.fields(from, part.to);
+        let piece = function.integrate(part.interval, &along, cells.length_mm * (part.to - from), &AsItIs);
+        cells.add(&piece, cells.transmittance);
+        cells.pass(&piece, open, part.to);
+        cells.runs.advance(function, &part, part.to, open, harm_per_mm * cells.length_mm);
     }
 }
 
@@ -96,24 +85,8 @@ pub(super) fn put<L: Lanes, const F: usize>(
     variance: L,
     pieces: L,
 ) {
-    let mut lanes = [[0.0; 16]; 7];
-    let [r, g, b] = integral.radiance;
-    // Summed over pieces, it may be more by a rounding.
-    let absorbed = integral.absorbed.min(L::ONE);
-    for (lane, x) in lanes.iter_mut().zip([r, g, b, absorbed, integral.error, pieces, variance]) {
-        x.store(lane);
-    }
-    let slots = &shown.slot[first..shown.count.min(first + L::LANES)];
-    for (k, &slot) in slots.iter().enumerate() {
-        let slot = slot as usize;
-        results.radiance[0][slot] = lanes[0][k];
-        results.radiance[1][slot] = lanes[1][k];
-        results.radiance[2][slot] = lanes[2][k];
-        results.absorbed[slot] = lanes[3][k];
-        results.error[slot] = lanes[4][k];
-        results.pieces[slot] = lanes[5][k];
-        results.variance[slot] = lanes[6][k];
-    }
+    let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
+    results.put(is_cell, &shown.slot[first..], integral, variance, pieces);
 }
 
 /// A field on its way through a cell: from one critical point to the next it is monotone, and passes its intervals in order.
@@ -156,6 +129,43 @@ pub(super) struct Part<L: Lanes, const F: usize> {
 }
 
 impl<L: Lanes, const F: usize> Runs<L, F> {
+    /// Of no cells.
+    #[inline(always)]
+    pub(super) fn nowhere() -> Self {
+        let run = Run { powers: [L::ZERO; 4], critical: [L::ONE; 2], at: L::ZERO, interval: L::Ints::splat(0), rounding: L::ZERO };
+        Runs { runs: [run; F], misplaced: L::ONE.lt(L::ZERO) }
+    }
+
+    /// Those of cells that have taken a lane, at their beginnings.
+    #[inline(always)]
+    pub(super) fn seat(&mut self, rows: &Beginnings<F>, taken: &Taken<L>) {
+        for (f, run) in self.runs.iter_mut().enumerate() {
+            taken.powers(&rows.powers[f], &mut run.powers);
+            for k in 0..2 {
+                run.critical[k] = taken.numbers(&rows.critical[f][k], run.critical[k]);
+            }
+            run.at = taken.numbers(&rows.powers[f][0], run.at);
+            run.interval = taken.ints(&rows.interval[f], run.interval);
+            run.rounding = taken.numbers(&rows.rounding[f], run.rounding);
+        }
+        self.misplaced = taken.none(self.misplaced);
+    }
+
+    /// At their beginnings, from cell number `first` on.
+    #[inline(always)]
+    pub(super) fn store(&self, rows: &mut Beginnings<F>, first: usize) {
+        for (f, run) in self.runs.iter().enumerate() {
+            for k in 0..4 {
+                run.powers[k].store(&mut rows.powers[f][k][first..]);
+            }
+            for k in 0..2 {
+                run.critical[k].store(&mut rows.critical[f][k][first..]);
+            }
+            run.interval.store(&mut rows.interval[f][first..]);
+            run.rounding.store(&mut rows.rounding[f][first..]);
+        }
+    }
+
     #[inline(always)]
     pub(super) fn new(fields: &[Cubic<L>; F], function: &impl Function<F>) -> Self {
         let runs = each(

@@ -1,8 +1,9 @@
 //! Cells between the steps of a round.
 
 use super::voxels::Corners;
+use crate::integrate::exact::piece::Integral;
 use crate::math::bernstein::Cubic;
-use crate::simd::{Ints, Lanes, Mask};
+use crate::simd::{BATCH, Ints, Lanes, Mask};
 
 /// Cells that a round works off together: enough to fill registers, few enough that little is looked at behind opaque ones.
 pub(super) const CELLS: usize = 512;
@@ -98,7 +99,7 @@ pub(super) struct Way<L: Lanes> {
 pub(super) struct Ways {
     base: [i32; ROOM],
     cell: [[i32; ROOM]; 3],
-    seat: [i32; ROOM],
+    pub(super) seat: [i32; ROOM],
     from: [[f32; ROOM]; 3],
     to: [[f32; ROOM]; 3],
 }
@@ -159,6 +160,31 @@ impl Results {
             error: [0.0; CELLS],
             variance: [0.0; CELLS],
             pieces: [0.0; CELLS],
+        }
+    }
+
+    /// Sets those of some lanes' cells, which are in these slots.
+    #[inline(always)]
+    pub(super) fn put<L: Lanes>(&mut self, lanes: L::Mask, slots: &[i32], integral: &Integral<L>, variance: L, pieces: L) {
+        let mut numbers = [[0.0; BATCH]; 7];
+        let [r, g, b] = integral.radiance;
+        // Summed over pieces, it may be more by a rounding.
+        let absorbed = integral.absorbed.min(L::ONE);
+        for (row, x) in numbers.iter_mut().zip([r, g, b, absorbed, integral.error, pieces, variance]) {
+            x.store(row);
+        }
+        let mut left = lanes.bits();
+        while left != 0 {
+            let k = left.trailing_zeros() as usize % BATCH;
+            left &= left - 1;
+            let slot = slots[k] as usize % CELLS;
+            self.radiance[0][slot] = numbers[0][k];
+            self.radiance[1][slot] = numbers[1][k];
+            self.radiance[2][slot] = numbers[2][k];
+            self.absorbed[slot] = numbers[3][k];
+            self.error[slot] = numbers[4][k];
+            self.pieces[slot] = numbers[5][k];
+            self.variance[slot] = numbers[6][k];
         }
     }
 

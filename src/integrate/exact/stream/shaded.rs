@@ -2,13 +2,14 @@
 //!
 //! Most pieces need no halving. Those that do wait in a list, so that registers are full of them too.
 
+use super::crossing::{Beginnings, Crossing};
 use super::function::Function;
 use super::light::{Lighting, Lights, Seen};
 use super::lit::Allowance;
 use super::nodes::AtNodes;
 use super::parts::{Part, Parts};
-use super::pieces::{Runs, load_fields, put};
-use super::queue::{Results, Shown, Way};
+use super::pieces::{load_fields, put};
+use super::queue::{ROOM, Results, Shown, Way};
 use super::voxels::Voxels;
 use crate::field::Voxel;
 use crate::integrate::exact::piece::Integral;
@@ -65,6 +66,9 @@ struct Sight<L> {
     largest_square: L,
 }
 
+/// Gradients along cells: rows by axis and power.
+pub(super) type Gradients = [[[f32; ROOM]; 4]; 3];
+
 /// Small enough for any picture, and large enough for f32 to square.
 const NOTHING: f64 = 1e-12;
 
@@ -81,20 +85,34 @@ impl<L: Lanes> Sight<L> {
 impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
     #[inline(always)]
     fn sight<L: Lanes>(&self, way: &Way<L>, are_cells: L::Mask) -> Sight<L> {
+        self.seen_from(self.gradient(way, are_cells), way.seat)
+    }
+
+    /// The gradient along cells.
+    #[inline(always)]
+    fn gradient<L: Lanes>(&self, way: &Way<L>, are_cells: L::Mask) -> [Powers<L>; 3] {
         let gradients = if self.voxels.are_inner::<L>(&way.corners.cell, are_cells) {
             self.voxels.inner_gradients::<L>(way.corners.base)
         } else {
             let corners = self.voxels.corners::<L>(way.corners.base);
             self.voxels.gradients(&way.corners, &corners)
         };
-        let lights = self.seen.lights(self.lighting, way.seat);
-        let gradient = each(
+        each(
             #[inline(always)]
             |a| powers::of(&trilinear_along(&gradients[a], way.from, way.to)),
-        );
-        let variance = L::pick32(&self.allowance.variance, way.seat);
-        let largest_square = L::pick32(&self.allowance.largest_square, way.seat);
-        Sight { gradient, lights, variance, error_per_mm: L::pick32(&self.allowance.per_mm, way.seat), largest_square }
+        )
+    }
+
+    /// Cells with this gradient, as rays in these seats see them.
+    #[inline(always)]
+    fn seen_from<L: Lanes>(&self, gradient: [Powers<L>; 3], seat: L::Ints) -> Sight<L> {
+        Sight {
+            gradient,
+            lights: self.seen.lights(self.lighting, seat),
+            variance: L::pick32(&self.allowance.variance, seat),
+            error_per_mm: L::pick32(&self.allowance.per_mm, seat),
+            largest_square: L::pick32(&self.allowance.largest_square, seat),
+        }
     }
 
     /// Whether the proven error of a piece of this length is what it may be, its transmittance aside.
@@ -182,61 +200,69 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
     shown: &Shown<F>,
     function: &impl Function<F>,
     scenery: &Scenery<'_, '_, V>,
+    beginnings: &mut Beginnings<F>,
+    gradients: &mut Gradients,
     waiting: &mut Waiting<F>,
     results: &mut Results,
 ) {
+    beginnings.prepare::<L>(shown, function);
     for first in (0..shown.count).step_by(L::LANES) {
-        let fields = load_fields::<L, F>(shown, first);
-        let length_mm = L::load(&shown.length_mm[first..]);
-        let harm = L::from_f64(f64::from(scenery.harm_per_mm)) * length_mm;
-        let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
-        let way = shown.way.load(first);
-        let sight = scenery.sight::<L>(&way, is_cell);
-        let mut runs = Runs::new(&fields, function);
-        let mut total = Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO };
-        let (mut transmittance, mut from, mut pieces, mut variance) = (L::ONE, L::ZERO, L::ZERO, L::ZERO);
-        loop {
-            let open = is_cell.and(from.lt(L::ONE));
-            if !open.any() {
-                break;
-            }
-            let part = runs.part(function, from);
-            let ends = [from, part.to];
-            let along = runs.fields(from, part.to);
-            let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, ends);
-            let piece_mm = length_mm * (part.to - from);
-            let piece = function.integrate(part.interval, &along, piece_mm, &light);
-            let missed = transmittance * scenery.missed(&light, &piece);
-            let allowed = sight.may_miss(transmittance * piece.absorbed);
-            let refused = open.and_not(missed.le(allowed).and(scenery.allows(sight.error_per_mm, &piece, piece_mm)));
-            if refused.any() {
-                let part = Part {
-                    slot: L::Ints::load(&shown.slot[first..]),
-                    seat: way.seat,
-                    fields: runs.powers(),
-                    interval: part.interval,
-                    gradient: sight.gradient,
-                    length_mm,
-                    ends,
-                    transmittance,
-                    allowed,
-                };
-                waiting.parts.append(refused, &part);
-            }
-            let counts = L::select(refused, L::ZERO, transmittance);
-            for c in 0..3 {
-                total.radiance[c] = counts.mul_plus(piece.radiance[c], total.radiance[c]);
-            }
-            total.error = counts.mul_plus(piece.error, total.error);
-            variance += L::select(refused, L::ZERO, missed * missed);
-            total.absorbed = transmittance.mul_plus(piece.absorbed, total.absorbed);
-            transmittance = transmittance.minus_product(transmittance, piece.absorbed);
-            pieces += L::select(open, L::ONE, L::ZERO);
-            runs.advance(function, &part, part.to, open, harm);
-            from = part.to;
+        let is_cell = (L::Ints::count() + splat::<L>(first)).lt(splat::<L>(shown.count));
+        let gradient = scenery.gradient::<L>(&shown.way.load(first), is_cell);
+        for (rows, powers) in gradients.iter_mut().flatten().zip(gradient.iter().flatten()) {
+            powers.store(&mut rows[first..]);
         }
-        total.error = runs.checked(total.error);
-        put(results, shown, first, &total, variance, pieces);
+    }
+    let harm_per_mm = L::from_f64(f64::from(scenery.harm_per_mm));
+    let mut cells = Crossing::<L, F>::new();
+    let mut seat = splat::<L>(0);
+    let mut sight = scenery.seen_from::<L>([[L::ZERO; 4]; 3], seat);
+    loop {
+        let open = cells.attend(
+            shown,
+            beginnings,
+            results,
+            #[inline(always)]
+            |taken| {
+                let mut gradient = sight.gradient;
+                for a in 0..3 {
+                    taken.powers(&gradients[a], &mut gradient[a]);
+                }
+                seat = taken.ints(&shown.way.seat, seat);
+                sight = scenery.seen_from(gradient, seat);
+            },
+        );
+        if !open.any() {
+            break;
+        }
+        let (from, transmittance) = (cells.from, cells.transmittance);
+        let part = cells.runs.part(function, from);
+        let ends = [from, part.to];
+        let along = cells.runs.fields(from, part.to);
+        let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, ends);
+        let piece_mm = cells.length_mm * (part.to - from);
+        let piece = function.integrate(part.interval, &along, piece_mm, &light);
+        let missed = transmittance * scenery.missed(&light, &piece);
+        let allowed = sight.may_miss(transmittance * piece.absorbed);
+        let refused = open.and_not(missed.le(allowed).and(scenery.allows(sight.error_per_mm, &piece, piece_mm)));
+        if refused.any() {
+            let part = Part {
+                slot: cells.slot,
+                seat,
+                fields: cells.runs.powers(),
+                interval: part.interval,
+                gradient: sight.gradient,
+                length_mm: cells.length_mm,
+                ends,
+                transmittance,
+                allowed,
+            };
+            waiting.parts.append(refused, &part);
+        }
+        cells.add(&piece, L::select(refused, L::ZERO, transmittance));
+        cells.variance += L::select(refused, L::ZERO, missed * missed);
+        cells.pass(&piece, open, part.to);
+        cells.runs.advance(function, &part, part.to, open, harm_per_mm * cells.length_mm);
     }
 }
 

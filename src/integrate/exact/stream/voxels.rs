@@ -61,6 +61,12 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
         corners
     }
 
+    /// From a voxel to the next along each axis, in memory.
+    fn strides(&self) -> [i32; 3] {
+        let [nx, ny, _] = self.dims;
+        [1, nx as i32, (nx * ny) as i32]
+    }
+
     /// The samples at places in memory, and their neighbours along x.
     #[inline(always)]
     fn pair<L: Lanes>(&self, at: L::Ints) -> [L; 2] {
@@ -113,22 +119,21 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     /// The same of cells none of which is at the border, samples at their corners included.
     #[inline(always)]
     pub(super) fn inner_gradients<L: Lanes>(&self, base: L::Ints) -> [[L; 8]; 3] {
-        let [nx, ny, _] = self.dims;
+        let [_, row, slab] = self.strides();
         let half = L::from_f64(0.5);
-        let rows = [0, nx, nx * ny, nx + nx * ny];
+        let rows = [0, row, slab, row + slab];
         let before = base - splat::<L>(1);
         let mut corners = [L::ZERO; 8];
         let mut per_index = [[L::ZERO; 8]; 3];
         for row in 0..4 {
-            let [a, b, c, d] = V::quads::<L>(self.samples, before + splat::<L>(rows[row]));
+            let [a, b, c, d] = V::quads::<L>(self.samples, before + L::Ints::splat(rows[row]));
             (corners[2 * row], corners[2 * row + 1]) = (b, c);
             (per_index[0][2 * row], per_index[0][2 * row + 1]) = ((c - a) * half, (d - b) * half);
         }
-        for (axis, stride, along, next) in [(1, nx, nx * ny, 4), (2, nx * ny, nx, 2)] {
-            for side in 0..2 {
-                let line = base + splat::<L>(side * along);
-                let below = self.pair::<L>(line - splat::<L>(stride));
-                let above = self.pair::<L>(line + splat::<L>(2 * stride));
+        for (axis, stride, along, next) in [(1, row, slab, 4), (2, slab, row, 2)] {
+            let beyond = [-stride, 2 * stride, along - stride, along + 2 * stride];
+            let [below, above, next_below, next_above] = V::pairs_around::<L, 4>(self.samples, base, beyond);
+            for (side, (below, above)) in [(below, above), (next_below, next_above)].into_iter().enumerate() {
                 for x in 0..2 {
                     let low = side * next + x;
                     let high = low + (6 - next);

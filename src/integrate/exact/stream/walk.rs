@@ -37,6 +37,10 @@ const STILL: f64 = 1e-7;
 /// A leap that ends so little before a face, voxels, ends behind it; much more than rounding.
 const NUDGE: f64 = 1e-9;
 
+/// Of what is left of a ray, what is walked: short of the border by more than the rounding of [`AHEAD`] steps, behind which there
+/// is no cell.
+const INSIDE: f64 = 1.0 - 4.0 * f32::EPSILON as f64;
+
 /// Rays inside a volume, one per seat. Cells, faces and places along an axis are those of the rising ray.
 #[derive(Debug)]
 pub(super) struct Walks {
@@ -94,6 +98,7 @@ impl Walks {
     }
 
     /// Seats a ray where it enters the volume.
+    #[inline(always)]
     pub(super) fn enter(&mut self, seat: usize, chord: &Chord) {
         self.at_mm[seat] = 0.0;
         self.base[seat] = 0;
@@ -169,6 +174,7 @@ impl Walks {
     }
 
     /// Where a ray crosses a face across an axis.
+    #[inline(always)]
     fn crossing_mm(&self, seat: usize, a: usize, face: i32) -> f64 {
         self.face_zero_mm[a][seat] + f64::from(face) * self.mm_per[a][seat]
     }
@@ -341,7 +347,7 @@ impl<L: Lanes> Lines<L> {
         // Nobody stays a rounding short of the border.
         at.origin_mm = L::Doubles::select(at.from_mm.lt(at.rest_mm), at_mm, self.exit_mm);
         at.from_mm = L::ZERO;
-        at.rest_mm = L::from_doubles(self.exit_mm - at.origin_mm);
+        at.rest_mm = L::from_doubles((self.exit_mm - at.origin_mm) * L::Doubles::splat(INSIDE));
         for a in 0..3 {
             at.next_mm[a] = self.next_mm(at, a);
         }
@@ -400,7 +406,8 @@ impl<L: Lanes> Lines<L> {
         let leaps = is_empty.and(at_mm.lt(leaves_mm));
         at.origin_mm = L::Doubles::select(leaps, leaves_mm, at.origin_mm);
         at.from_mm = L::select(leaps, L::ZERO, at.from_mm);
-        at.rest_mm = L::select(leaps, L::from_doubles(self.exit_mm - leaves_mm), at.rest_mm);
+        let rest_mm = (self.exit_mm - leaves_mm) * L::Doubles::splat(INSIDE);
+        at.rest_mm = L::select(leaps, L::from_doubles(rest_mm), at.rest_mm);
         for a in 0..3 {
             let place = self.entry[a] + leaves_mm * self.per_mm[a];
             let cell = place.floor().to_ints().min(self.last_cell[a]);
