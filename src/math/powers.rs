@@ -29,15 +29,21 @@ pub fn slope<R: Number>(&[_, c1, c2, c3]: &Powers<R>, u: R) -> R {
     (R::from_f64(3.0) * c3).mul_plus(u, R::from_f64(2.0) * c2).mul_plus(u, c1)
 }
 
+/// Half the second derivative at `u`.
+#[inline(always)]
+pub fn half_bend<R: Number>(&[_, _, c2, c3]: &Powers<R>, u: R) -> R {
+    (R::from_f64(3.0) * c3).mul_plus(u, c2)
+}
+
 /// The same cubic over `[from, to]`, mapped to `[0, 1]`, in Bernstein form.
 #[inline(always)]
 pub fn restrict<R: Number>(powers: &Powers<R>, from: R, to: R) -> Cubic<R> {
-    let &[_, _, c2, c3] = powers;
+    let &[_, _, _, c3] = powers;
     let (length, third) = (to - from, R::from_f64(1.0 / 3.0));
     // Its terms in the new parameter.
     let constant = value(powers, from);
     let linear = length * slope(powers, from);
-    let square = length * length * (R::from_f64(3.0) * c3).mul_plus(from, c2);
+    let square = length * length * half_bend(powers, from);
     let cube = length * length * length * c3;
     let (a, b) = (third * linear, third * square);
     [constant, constant + a, constant + (a + a + b), constant + (linear + square + cube)]

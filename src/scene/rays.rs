@@ -49,10 +49,11 @@ impl Rays {
         let [across, upwards, _] = &mut self.direction;
         across.clear();
         upwards.clear();
-        for [column, row] in pixels {
+        // From inside: nested iterators take long to be asked one by one.
+        pixels.for_each(|[column, row]| {
             across.push(column as f64 + 0.5);
             upwards.push(row as f64 + 0.5);
-        }
+        });
         let count = across.len();
         for axis in self.origin_mm.iter_mut().chain(&mut self.direction) {
             axis.resize(count, 0.0);

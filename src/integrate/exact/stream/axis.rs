@@ -63,41 +63,55 @@ impl Axis {
     /// The interval of each number; a knot belongs to the interval above it.
     #[inline(always)]
     pub(super) fn interval<L: Lanes>(&self, x: L) -> L::Ints {
+        let [interval] = self.count(
+            #[inline(always)]
+            |knot: L| [knot.le(x)],
+        );
+        interval
+    }
+
+    /// The intervals of both ends of ranges.
+    #[inline(always)]
+    pub(super) fn intervals_of<L: Lanes>(&self, [low, high]: [L; 2]) -> [L::Ints; 2] {
         self.count(
             #[inline(always)]
-            |knot: L| knot.le(x),
+            |knot: L| [knot.le(low), knot.le(high)],
         )
     }
 
     /// The interval of each number; a knot belongs to the interval below it.
     #[inline(always)]
     pub(super) fn interval_below<L: Lanes>(&self, x: L) -> L::Ints {
-        self.count(
+        let [interval] = self.count(
             #[inline(always)]
-            |knot: L| knot.lt(x),
-        )
+            |knot: L| [knot.lt(x)],
+        );
+        interval
     }
 
-    /// How many knots lie below, where those that do come first.
+    /// How many knots lie below each of some numbers, where those that do come first.
     #[inline(always)]
-    fn count<L: Lanes>(&self, is_below: impl Fn(L) -> L::Mask) -> L::Ints {
-        let (none, one) = (L::Ints::splat(0), L::Ints::splat(1));
+    fn count<L: Lanes, const N: usize>(&self, are_below: impl Fn(L) -> [L::Mask; N]) -> [L::Ints; N] {
+        let mut counts = [L::Ints::splat(0); N];
         if self.knots.len() <= FEW {
-            let mut count = none;
             for &knot in &self.knots {
-                count = count + L::Ints::select(is_below(L::from_f64(f64::from(knot))), one, none);
+                let below = are_below(L::splat(knot));
+                for n in 0..N {
+                    counts[n] = L::Ints::select(below[n], counts[n] + L::Ints::splat(1), counts[n]);
+                }
             }
-            return count;
+            return counts;
         }
         // Bisection among the ends, of which the first is always below and those after the last never are.
-        let mut count = none;
         let mut width = (self.knots.len() + 1).next_power_of_two() / 2;
         while width > 0 {
-            let tried = count + L::Ints::splat(width as i32);
-            count = L::Ints::select(is_below(L::pick(&self.ends, tried)), tried, count);
+            for n in 0..N {
+                let tried = counts[n] + L::Ints::splat(width as i32);
+                counts[n] = L::Ints::select(are_below(L::pick(&self.ends, tried))[n], tried, counts[n]);
+            }
             width /= 2;
         }
-        count
+        counts
     }
 
     /// The lower end of each interval; asked for one more, the upper end.

@@ -58,6 +58,12 @@ impl<L: Lanes> Taken<L> {
         L::Ints::select(self.lanes, L::Ints::load(&row[self.first..]).expand(self.free), before)
     }
 
+    /// The seats of the rays that pass the cells.
+    #[inline(always)]
+    pub(super) fn seats<const F: usize>(&self, shown: &Shown<F>, before: L::Ints) -> L::Ints {
+        L::Ints::select(self.lanes, shown.seats::<L>(self.first).expand(self.free), before)
+    }
+
     /// One number for all of the cells, and in other lanes what was there.
     #[inline(always)]
     fn all(&self, x: L, before: L) -> L {
@@ -115,12 +121,13 @@ impl<L: Lanes, const F: usize> Crossing<L, F> {
     }
 
     /// Sees to it that enough lanes have a cell to pass, and says which have; `seated` is told who has come. What has been passed
-    /// goes to the results.
+    /// goes to the results, with its variance if errors are estimated.
     #[inline(always)]
     pub(super) fn attend(
         &mut self,
         shown: &Shown<F>,
         beginnings: &Beginnings<F>,
+        are_estimated: bool,
         results: &mut Results,
         seated: impl FnOnce(&Taken<L>),
     ) -> L::Mask {
@@ -131,7 +138,7 @@ impl<L: Lanes, const F: usize> Crossing<L, F> {
         if if waiting > 0 { idle <= L::LANES / 4 } else { open.any() } {
             return open;
         }
-        self.put(self.is_seated.and_not(open), results);
+        self.put(self.is_seated.and_not(open), are_estimated, results);
         self.is_seated = open;
         if waiting > 0 {
             let free = <L::Mask as Mask>::ALL.and_not(open);
@@ -178,13 +185,13 @@ impl<L: Lanes, const F: usize> Crossing<L, F> {
     }
 
     #[inline(always)]
-    fn put(&self, ended: L::Mask, results: &mut Results) {
+    fn put(&self, ended: L::Mask, are_estimated: bool, results: &mut Results) {
         if !ended.any() {
             return;
         }
         let integral = Integral { error: self.runs.checked(self.total.error), ..self.total };
         let mut slots = [0; crate::simd::BATCH];
         self.slot.store(&mut slots);
-        results.put(ended, &slots, &integral, self.variance, self.pieces);
+        results.put(ended, &slots, &integral, are_estimated.then_some(self.variance), self.pieces);
     }
 }

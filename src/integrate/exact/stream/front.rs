@@ -57,7 +57,7 @@ impl Fronts {
     #[inline(always)]
     pub(super) fn get(&self, seat: usize) -> Front {
         Front {
-            radiance: self.radiance.map(|channel| channel[seat]),
+            radiance: [self.radiance[0][seat], self.radiance[1][seat], self.radiance[2][seat]],
             transmittance: self.transmittance[seat],
             opacity: self.opacity[seat],
             budget: Budget::resumed(self.tolerance, self.spent[seat]),
@@ -78,28 +78,38 @@ impl Fronts {
         self.pieces[seat] = light.pieces as f64;
     }
 
-    /// How a ray ended, if it did.
+    /// A bit for each seat whose ray has ended, and for each empty one.
     #[inline(always)]
-    pub(super) fn ended(&mut self, seat: usize, walks: &Walks) -> Option<Traced> {
-        let has_ended = self.goes_on[seat] == 0 || walks.is_over(seat);
-        has_ended.then(|| {
-            self.goes_on[seat] = 0;
-            self.get(seat).ended(self.rest[seat])
-        })
+    pub(super) fn ended<L: Lanes>(&self, walks: &Walks) -> u32 {
+        const { assert!(RAYS <= u32::BITS as usize, "a bit each") };
+        let mut ended = 0;
+        for first in (0..RAYS).step_by(L::LANES) {
+            let stopped = L::Ints::load(&self.goes_on[first..]).lt(L::Ints::splat(1));
+            ended |= stopped.or(walks.are_over::<L>(first)).bits() << first;
+        }
+        ended
+    }
+
+    /// How the ray in a seat ended.
+    #[inline(always)]
+    pub(super) fn take(&mut self, seat: usize) -> Traced {
+        self.goes_on[seat] = 0;
+        self.get(seat).ended(self.rest[seat])
     }
 
     /// Composites what cells do onto their rays, step by step. `again` integrates the cell of a ray again, by its seat and its
-    /// slot, with the care that the ray's budget asks for.
+    /// slot, with the care that the ray's budget asks for. Results have variances if their errors are estimated.
     #[inline(always)]
     pub(super) fn composite<L: Lanes>(
         &mut self,
         passed: &Passed,
         results: &Results,
+        are_estimated: bool,
         walks: &Walks,
         mut again: impl FnMut(usize, usize, &mut Front),
     ) {
         for first in (0..RAYS).step_by(L::LANES) {
-            self.composite_lanes::<L>(first, passed, results, walks, &mut again);
+            self.composite_lanes::<L>(first, passed, results, are_estimated, walks, &mut again);
         }
     }
 
@@ -109,6 +119,7 @@ impl Fronts {
         first: usize,
         passed: &Passed,
         results: &Results,
+        are_estimated: bool,
         walks: &Walks,
         again: &mut impl FnMut(usize, usize, &mut Front),
     ) {
@@ -144,8 +155,10 @@ impl Fronts {
             sums.transmittance = L::Doubles::select(fits, next, t);
             sums.opacity = L::Doubles::select(fits, sums.opacity + absorbed, sums.opacity);
             sums.spent = L::Doubles::select(fits, sums.spent + error, sums.spent);
-            let variance = t * t * L::load(&results.variance[slot..]).to_doubles();
-            sums.variance = L::Doubles::select(fits, sums.variance + variance, sums.variance);
+            if are_estimated {
+                let variance = t * t * L::load(&results.variance[slot..]).to_doubles();
+                sums.variance = L::Doubles::select(fits, sums.variance + variance, sums.variance);
+            }
             sums.pieces = L::Doubles::select(fits, sums.pieces + pieces.to_doubles(), sums.pieces);
             let fails = shows.and_not(fits);
             if fails.any() {

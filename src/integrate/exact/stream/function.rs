@@ -103,7 +103,8 @@ impl Function<1> for OfValue {
         let [first, last] = self.lit;
         let dark = high.lt(L::splat(first)).or(L::splat(last).le(low));
         if self.has_gaps {
-            dark.or(self.is_empty::<L>([self.axis.interval(low)], [self.axis.interval(high)]))
+            let [first, last] = self.axis.intervals_of([low, high]);
+            dark.or(self.is_empty::<L>([first], [last]))
         } else {
             dark
         }
@@ -223,7 +224,8 @@ impl Function<2> for OfValueAndMagnitude {
     #[inline(always)]
     fn is_dark<L: Lanes>(&self, low: L, high: L) -> L::Mask {
         let steepest = L::Ints::splat(self.magnitudes.intervals() as i32 - 1);
-        self.is_empty::<L>([self.values.interval(low), L::Ints::splat(0)], [self.values.interval(high), steepest])
+        let [first, last] = self.values.intervals_of([low, high]);
+        self.is_empty::<L>([first, L::Ints::splat(0)], [last, steepest])
     }
 
     #[inline(always)]

@@ -126,17 +126,28 @@ impl Seen {
     /// The lights as rays see them, by their seats.
     #[inline(always)]
     pub(super) fn lights<L: Lanes>(&self, lighting: &Lighting, seat: L::Ints) -> Lights<L> {
-        let mut lights = Lights { towards: [[L::ZERO; 3]; LIGHTS], half: [[L::ZERO; 3]; LIGHTS] };
-        for n in 0..lighting.lights() {
-            for a in 0..3 {
-                lights.towards[n][a] = L::pick32(&self.towards[n][a], seat);
-                if !lighting.are_at_the_eye {
-                    lights.half[n][a] = L::pick32(&self.half[n][a], seat);
-                }
+        let none = [L::ZERO; 3];
+        let [mut towards, mut half] = [[none; LIGHTS]; 2];
+        // One by one: a loop of unknown length would leave them in memory.
+        let has_second = lighting.lights() > 1;
+        towards[0] = vectors(&self.towards[0], seat);
+        if has_second {
+            towards[1] = vectors(&self.towards[1], seat);
+        }
+        if !lighting.are_at_the_eye {
+            half[0] = vectors(&self.half[0], seat);
+            if has_second {
+                half[1] = vectors(&self.half[1], seat);
             }
         }
-        lights
+        Lights { towards, half }
     }
+}
+
+/// The vectors of these seats.
+#[inline(always)]
+fn vectors<L: Lanes>(of_seat: &[[f32; RAYS]; 3], seat: L::Ints) -> [L; 3] {
+    [L::pick32(&of_seat[0], seat), L::pick32(&of_seat[1], seat), L::pick32(&of_seat[2], seat)]
 }
 
 /// The lights as the rays of some lanes see them.

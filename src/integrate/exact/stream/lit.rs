@@ -91,17 +91,17 @@ struct Cells<L> {
 impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
     /// Reads the gradients of cells, and how their rays see the lights.
     #[inline(always)]
-    fn cells<L: Lanes>(&self, way: &Way<L>) -> Cells<L> {
-        let corners = self.voxels.corners::<L>(way.corners.base);
-        let gradients = self.voxels.gradients(&way.corners, &corners);
+    fn cells<L: Lanes>(&self, way: &Way<L>, seat: L::Ints) -> Cells<L> {
+        let corners = self.voxels.corners::<L>(way.base);
+        let gradients = self.voxels.gradients(&self.voxels.corners_at::<L>(way.base), &corners);
         Cells {
             gradient: each(
                 #[inline(always)]
                 |a| trilinear_along(&gradients[a], way.from, way.to),
             ),
-            lights: self.seen.lights(self.lighting, way.seat),
-            allowed_per_mm: L::pick32(&self.allowance.per_mm, way.seat),
-            allowed_per_cell: L::pick32(&self.allowance.per_cell, way.seat),
+            lights: self.seen.lights(self.lighting, seat),
+            allowed_per_mm: L::pick32(&self.allowance.per_mm, seat),
+            allowed_per_cell: L::pick32(&self.allowance.per_cell, seat),
         }
     }
 }
@@ -120,7 +120,7 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let length_mm = L::load(&shown.length_mm[first..]);
         let harm = L::from_f64(f64::from(scenery.harm_per_mm)) * length_mm;
         let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
-        let cells = scenery.cells::<L>(&shown.way.load(first));
+        let cells = scenery.cells::<L>(&shown.way.load(first), shown.seats::<L>(first));
         let mut runs = Runs::new(&fields, function);
         let mut sides: [Run<L>; LIGHTS] = each(
             #[inline(always)]
@@ -153,7 +153,7 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
         }
         let error = L::select(stuck, L::from_f64(f64::INFINITY), sum.total.error);
         sum.total.error = runs.checked(error);
-        put(results, shown, first, &sum.total, L::ZERO, sum.pieces);
+        put(results, shown, first, &sum.total, None, sum.pieces);
     }
 }
 

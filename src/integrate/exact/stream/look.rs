@@ -56,7 +56,7 @@ impl Fields<2> for Read {
 }
 
 /// Looks into the cells that rays pass at several steps, the first lane's slot at the first step being `first`. Those whose fields
-/// stay in one interval go to `whole`, those that may cross a knot to `cut`.
+/// stay in one interval go to `whole`, those that may cross a knot to `cut`. `corners` is room for samples.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "what is read, what with, and where it goes")]
 pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
@@ -64,6 +64,7 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
     steps: &[Cells<L>; AHEAD],
     first: usize,
     voxels: &Voxels<'_, V>,
+    corners: &mut [[L; 8]; AHEAD],
     function: &impl Function<F>,
     is_lit: bool,
     passed: &mut Passed,
@@ -73,7 +74,6 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
     Read: Fields<F>,
 {
     // Corners alone already say that most cells are dark. First those of all steps, so that no read waits for another.
-    let mut corners = [[L::ZERO; 8]; AHEAD];
     let mut may_show = [<L::Mask as Mask>::ALL; AHEAD];
     for n in 0..AHEAD {
         // Where no ray passes a cell, memory is left alone.
@@ -101,16 +101,19 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
         if !shows.any() {
             continue;
         }
-        for a in 0..3 {
-            at.cell[a].store(&mut passed.cell[a][slot..]);
-        }
+        at.base.store(&mut passed.base[slot..]);
         cells.exit_mm().store(&mut passed.exit_mm[slot..]);
         let slots = L::Ints::count() + L::Ints::splat(slot as i32);
         let length_mm = cells.to_mm - cells.from_mm;
         let way = is_lit.then(
             #[inline(always)]
-            || Way { corners: at, seat: slots.and(L::Ints::splat(RAYS as i32 - 1)), from, to },
+            || Way { base: at.base, from, to },
         );
+        if is_lit {
+            let are_inner = voxels.are_inner::<L>(&at.cell, shows);
+            whole.are_inner &= are_inner;
+            cut.are_inner &= are_inner;
+        }
         whole.append(shows.and(stays), slots, &fields, &least, length_mm, way.as_ref());
         cut.append(shows.and_not(stays), slots, &fields, &least, length_mm, way.as_ref());
     }
@@ -124,5 +127,5 @@ fn intervals<L: Lanes>(axis: &Axis, cubic: &Cubic<L>) -> [L::Ints; 2] {
         let rounding = L::from_f64(ROUNDINGS * f64::from(f32::EPSILON)) * low.abs().max(high.abs());
         (low, high) = (low - rounding, high + rounding);
     }
-    [axis.interval(low), axis.interval(high)]
+    axis.intervals_of([low, high])
 }

@@ -49,7 +49,7 @@ use light::Seen;
 use lit::{Allowance, Scenery, lit};
 use look::look;
 use queue::{Passed, ROOM, Results, Shown};
-use walk::{RAYS, Walks};
+use walk::{AHEAD, RAYS, Walks};
 
 pub(super) use function::{Function, OfValue, OfValueAndMagnitude};
 pub(super) use light::Lighting;
@@ -171,13 +171,17 @@ where
         let mut waiting = 0..rays.len();
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
+        let mut corners = [[L::ZERO; 8]; AHEAD];
         let mut allowance = Allowance::new(Budget::of_pieces(stream.frame.tolerance));
         loop {
-            for (seat, ray) in seated.iter_mut().enumerate() {
-                if let Some((number, _)) = *ray
-                    && let Some(traced) = fronts.ended(seat, &walks)
-                {
-                    ended(number, traced);
+            // A bit for each seat.
+            let mut free = fronts.ended::<L>(&walks);
+            while free != 0 {
+                let seat = free.trailing_zeros() as usize % RAYS;
+                free &= free - 1;
+                let ray = &mut seated[seat];
+                if let Some((number, _)) = *ray {
+                    ended(number, fronts.take(seat));
                     walks.leave(seat);
                     *ray = None;
                 }
@@ -199,8 +203,8 @@ where
                 return;
             }
             results.clear();
-            whole.count = 0;
-            cut.count = 0;
+            whole.clear();
+            cut.clear();
             walks.pass::<L>(
                 &stream.occupancy,
                 #[inline(always)]
@@ -210,6 +214,7 @@ where
                         steps,
                         first,
                         &stream.voxels,
+                        &mut corners,
                         &stream.function,
                         stream.lighting.is_some(),
                         passed,
@@ -240,9 +245,9 @@ where
                 pieces::whole::<L, F>(whole, &stream.function, results);
                 pieces::cut::<L, F>(cut, &stream.function, harm_per_mm, beginnings, results);
             }
-            fronts.composite::<L>(passed, results, &walks, |seat, slot, light| {
+            fronts.composite::<L>(passed, results, stream.estimate.is_some(), &walks, |seat, slot, light| {
                 let Some((_, direction)) = seated[seat] else { unreachable!("cells belong to rays") };
-                let cell = passed.cell.each_ref().map(|axis| axis[slot]);
+                let cell = stream.voxels.cell(passed.base[slot]);
                 stream.again(&walks, seat, cell, direction, light, splits);
             });
         }

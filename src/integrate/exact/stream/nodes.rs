@@ -58,8 +58,6 @@ impl Lighting {
     ) -> AtNodes<'_, L> {
         let number = L::from_f64;
         let length = to - from;
-        let none = [[L::ZERO; NODES]; LIGHTS];
-        let mut found = AtNodes { lighting: self, lambert: none, gloss: none, deviation: L::ZERO };
         let (mut normals, mut fades) = ([[L::ZERO; 3]; NODES], [L::ONE; NODES]);
         let (mut turn, mut vanished) = (L::ZERO, L::ZERO.lt(L::ZERO));
         for i in 0..NODES {
@@ -91,37 +89,61 @@ impl Lighting {
         let of_gloss = of_gloss.min(number(LARGEST_OF_GLOSS * both * self.specular));
         let smooth = turn.mul_plus(number(OF_TURN * of_lambert), of_gloss);
         let smooth = square.mul_plus(number(OF_TURN_SQUARED * of_lambert), smooth);
-        for (n, color) in self.colors.iter().enumerate().take(LIGHTS) {
-            let mut kink = L::ZERO;
-            let mut before = L::ZERO;
-            let (mut facings, mut shines) = ([L::ZERO; NODES], [L::ZERO; NODES]);
-            for i in 0..NODES {
-                let cosine = dot(&normals[i], &lights.towards[n]);
-                let shine = if self.are_at_the_eye { cosine } else { dot(&normals[i], &lights.half[n]) };
-                (facings[i], shines[i]) = if self.two_sided {
-                    (cosine.abs(), shine.abs().min(L::ONE))
-                } else {
-                    (cosine.max(L::ZERO), shine.max(L::ZERO).min(L::ONE))
-                };
-                found.lambert[n][i] = number(self.diffuse) * (fades[i] * facings[i]);
-                if i > 0 {
-                    // Between nodes on two sides of a light lies a kink.
-                    let changes = (before * cosine).lt(L::ZERO);
-                    kink += L::select(changes, (before - cosine).abs(), L::ZERO);
-                }
-                before = cosine;
-            }
-            if self.specular != 0.0 {
-                let glosses = power(shines, self.shininess);
-                for i in 0..NODES {
-                    let gloss = number(self.specular) * (fades[i] * glosses[i]);
-                    found.gloss[n][i] = L::select(L::ZERO.lt(facings[i]), gloss, L::ZERO);
-                }
-            }
-            let deviation = kink.mul_plus(number(OF_KINK * of_lambert), smooth);
-            found.deviation = deviation.mul_plus(number(brightest(color)), found.deviation);
+        let [mut lambert, mut gloss] = [[[L::ZERO; NODES]; LIGHTS]; 2];
+        let mut deviation = L::ZERO;
+        // One by one: a loop of unknown length would leave all of them in memory.
+        if let Some(color) = self.colors.first() {
+            let kink;
+            (lambert[0], gloss[0], kink) = self.of_light(&normals, &fades, &lights.towards[0], &lights.half[0]);
+            let more = kink.mul_plus(number(OF_KINK * of_lambert), smooth);
+            deviation = more.mul_plus(number(brightest(color)), deviation);
         }
-        found
+        if let Some(color) = self.colors.get(1) {
+            let kink;
+            (lambert[1], gloss[1], kink) = self.of_light(&normals, &fades, &lights.towards[1], &lights.half[1]);
+            let more = kink.mul_plus(number(OF_KINK * of_lambert), smooth);
+            deviation = more.mul_plus(number(brightest(color)), deviation);
+        }
+        AtNodes { lighting: self, lambert, gloss, deviation }
+    }
+
+    /// The diffuse and the specular term of a light at nodes, and by how much the cosine changes between nodes on two sides of it.
+    #[inline(always)]
+    fn of_light<L: Lanes>(
+        &self,
+        normals: &[[L; 3]; NODES],
+        fades: &[L; NODES],
+        towards: &[L; 3],
+        half: &[L; 3],
+    ) -> ([L; NODES], [L; NODES], L) {
+        let number = L::from_f64;
+        let (mut lambert, mut gloss) = ([L::ZERO; NODES], [L::ZERO; NODES]);
+        let (mut facings, mut shines) = ([L::ZERO; NODES], [L::ZERO; NODES]);
+        let (mut kink, mut before) = (L::ZERO, L::ZERO);
+        for i in 0..NODES {
+            let cosine = dot(&normals[i], towards);
+            let shine = if self.are_at_the_eye { cosine } else { dot(&normals[i], half) };
+            (facings[i], shines[i]) = if self.two_sided {
+                (cosine.abs(), shine.abs().min(L::ONE))
+            } else {
+                (cosine.max(L::ZERO), shine.max(L::ZERO).min(L::ONE))
+            };
+            lambert[i] = number(self.diffuse) * (fades[i] * facings[i]);
+            if i > 0 {
+                // Between nodes on two sides of a light lies a kink.
+                let changes = (before * cosine).lt(L::ZERO);
+                kink += L::select(changes, (before - cosine).abs(), L::ZERO);
+            }
+            before = cosine;
+        }
+        if self.specular != 0.0 {
+            let glosses = power(shines, self.shininess);
+            for i in 0..NODES {
+                let shine = number(self.specular) * (fades[i] * glosses[i]);
+                gloss[i] = L::select(L::ZERO.lt(facings[i]), shine, L::ZERO);
+            }
+        }
+        (lambert, gloss, kink)
     }
 }
 

@@ -125,7 +125,10 @@ impl<const F: usize> Parts<F> {
     /// As many as a register has lanes, or as there are.
     #[inline(always)]
     pub(super) fn load<L: Lanes>(&self, first: usize) -> Part<L, F> {
-        let number = |n: usize| L::load(&self.numbers[n][first..]);
+        let [length_mm, front, back, transmittance, allowed] = each(
+            #[inline(always)]
+            |n| L::load(&self.numbers[n][first..]),
+        );
         Part {
             slot: L::Ints::load(&self.slot[first..]),
             seat: L::Ints::load(&self.seat[first..]),
@@ -151,10 +154,10 @@ impl<const F: usize> Parts<F> {
                     )
                 },
             ),
-            length_mm: number(0),
-            ends: [number(1), number(2)],
-            transmittance: number(3),
-            allowed: number(4),
+            length_mm,
+            ends: [front, back],
+            transmittance,
+            allowed,
         }
     }
 

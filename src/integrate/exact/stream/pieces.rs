@@ -15,11 +15,11 @@ use crate::simd::{Ints, Lanes, Mask, Table};
 /// Iterations after which a crossing is not sought any further; bisection alone would be done by then.
 const MOST_ITERATIONS: usize = 40;
 
-/// The last step of an iteration for a crossing is at most so long. Newton's iteration then doubles the digits once more.
-/// Where the function does not jump, a cut that is off by `u` of a cell's length changes light by the square of `u` times what
-/// the function changes by along the cell.
+/// The last step of an iteration for a crossing is at most so long; what is left is of the order of its cube. Where the function
+/// does not jump, a cut that is off by `u` of a cell's length changes light by the square of `u` times what the function
+/// changes by along the cell.
 const PRECISE: f32 = 0.5 * f32::EPSILON;
-const ENOUGH: f32 = 1.0 / 128.0;
+const ENOUGH: f32 = 1.0 / 32.0;
 
 /// Integrates cells whose fields stay in their intervals.
 #[inline(always)]
@@ -31,7 +31,7 @@ pub(super) fn whole<L: Lanes, const F: usize>(shown: &Shown<F>, function: &impl 
             interval[f] = L::Ints::load(&shown.interval[f][first..]);
         }
         let integral = function.integrate(interval, &fields, L::load(&shown.length_mm[first..]), &AsItIs);
-        put(results, shown, first, &integral, L::ZERO, L::ONE);
+        put(results, shown, first, &integral, None, L::ONE);
     }
 }
 
@@ -49,7 +49,7 @@ pub(super) fn cut<L: Lanes, const F: usize>(
     let harm_per_mm = L::from_f64(f64::from(harm_per_mm));
     let mut cells = Crossing::<L, F>::new();
     loop {
-        let open = cells.attend(shown, beginnings, results, |_| ());
+        let open = cells.attend(shown, beginnings, false, results, |_| ());
         if !open.any() {
             break;
         }
@@ -82,7 +82,7 @@ pub(super) fn put<L: Lanes, const F: usize>(
     shown: &Shown<F>,
     first: usize,
     integral: &Integral<L>,
-    variance: L,
+    variance: Option<L>,
     pieces: L,
 ) {
     let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
@@ -327,7 +327,7 @@ struct Between<L> {
     at_to: L,
 }
 
-/// Where monotone cubics take a level that lies between their values at the ends. Newton's iteration kept inside a shrinking
+/// Where monotone cubics take a level that lies between their values at the ends. Halley's iteration kept inside a shrinking
 /// bracket, begun where the chord crosses.
 #[inline(always)]
 fn crossing<L: Lanes>(
@@ -339,26 +339,27 @@ fn crossing<L: Lanes>(
     precision: f32,
 ) -> L {
     let [c0, c1, c2, c3] = *powers;
-    let above = [c0 - level, c1, c2, c3];
+    let mut above = [c0 - level, c1, c2, c3];
+    for c in &mut above {
+        // As if all rose.
+        *c = L::select(rises, *c, -*c);
+    }
     let half = L::from_f64(0.5);
     let (mut low, mut high) = (between.from, between.to);
     let chord = low + (high - low) * (between.at_from / (between.at_from - between.at_to));
     let mut u = L::select(is_between(chord, low, high), chord, half * (low + high));
     let mut open = wanted;
     for _ in 0..MOST_ITERATIONS {
-        let miss = powers::value(&above, u);
-        let is_above = L::ZERO.lt(miss);
-        // Beyond the crossing if above on the way up, or below on the way down.
-        let beyond = is_above.and(rises).or(wanted.and_not(is_above).and_not(rises));
+        let (miss, slope) = (powers::value(&above, u), powers::slope(&above, u));
+        let beyond = L::ZERO.lt(miss);
         high = L::select(beyond, u, high);
         low = L::select(beyond, low, u);
-        let newton = u - miss / powers::slope(&above, u);
+        let halley = u - miss * slope / (slope * slope).minus_product(miss, powers::half_bend(&above, u));
         // NaN and infinity from a flat place fail the comparison and bisect.
-        let next = L::select(is_between(newton, low, high), newton, half * (low + high));
+        let next = L::select(low.le(halley).and(halley.le(high)), halley, half * (low + high));
         let moved = L::from_f64(f64::from(precision)).lt((next - u).abs());
-        let exact = miss.le(L::ZERO).and(L::ZERO.le(miss));
-        u = L::select(open.and_not(exact), next, u);
-        open = open.and(moved).and_not(exact);
+        u = L::select(open, next, u);
+        open = open.and(moved);
         if !open.any() {
             break;
         }

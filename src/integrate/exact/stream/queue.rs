@@ -1,6 +1,6 @@
 //! Cells between the steps of a round.
 
-use super::voxels::Corners;
+use super::walk::RAYS;
 use crate::integrate::exact::piece::Integral;
 use crate::math::bernstein::Cubic;
 use crate::simd::{BATCH, Ints, Lanes, Mask};
@@ -15,15 +15,15 @@ pub(super) const ROOM: usize = CELLS + 16;
 /// its step. What other slots have is left from earlier rounds.
 #[derive(Debug)]
 pub(super) struct Passed {
-    /// Lower corner, voxel indices.
-    pub(super) cell: [[i32; CELLS]; 3],
+    /// Lower corner, in memory.
+    pub(super) base: [i32; CELLS],
     /// Where the ray leaves the cell, mm from where it entered the volume.
     pub(super) exit_mm: [f32; CELLS],
 }
 
 impl Passed {
     pub(super) fn new() -> Self {
-        Passed { cell: [[0; CELLS]; 3], exit_mm: [0.0; CELLS] }
+        Passed { base: [0; CELLS], exit_mm: [0.0; CELLS] }
     }
 }
 
@@ -40,6 +40,8 @@ pub(super) struct Shown<const F: usize> {
     pub(super) length_mm: [f32; ROOM],
     /// Where the cells are, in lit scenes.
     pub(super) way: Ways,
+    /// Whether all of them have neighbours on all sides, in lit scenes.
+    pub(super) are_inner: bool,
 }
 
 impl<const F: usize> Shown<F> {
@@ -51,7 +53,20 @@ impl<const F: usize> Shown<F> {
             interval: [[0; ROOM]; F],
             length_mm: [0.0; ROOM],
             way: Ways::new(),
+            are_inner: true,
         }
+    }
+
+    /// Forgets all cells.
+    pub(super) fn clear(&mut self) {
+        self.count = 0;
+        self.are_inner = true;
+    }
+
+    /// The seats of the rays that pass as many cells as a register has lanes.
+    #[inline(always)]
+    pub(super) fn seats<L: Lanes>(&self, first: usize) -> L::Ints {
+        L::Ints::load(&self.slot[first..]).and(L::Ints::splat(RAYS as i32 - 1))
     }
 
     /// Appends the chosen ones of a register's cells.
@@ -86,9 +101,8 @@ impl<const F: usize> Shown<F> {
 
 /// The way of a ray through a cell.
 pub(super) struct Way<L: Lanes> {
-    pub(super) corners: Corners<L::Ints>,
-    /// Which ray, by its seat.
-    pub(super) seat: L::Ints,
+    /// Lower corner of the cell, in memory.
+    pub(super) base: L::Ints,
     /// Entry and exit, in `[0, 1]³` of the cell.
     pub(super) from: [L; 3],
     pub(super) to: [L; 3],
@@ -98,8 +112,6 @@ pub(super) struct Way<L: Lanes> {
 #[derive(Debug)]
 pub(super) struct Ways {
     base: [i32; ROOM],
-    cell: [[i32; ROOM]; 3],
-    pub(super) seat: [i32; ROOM],
     from: [[f32; ROOM]; 3],
     to: [[f32; ROOM]; 3],
 }
@@ -107,15 +119,13 @@ pub(super) struct Ways {
 impl Ways {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Ways { base: [0; ROOM], cell: [[0; ROOM]; 3], seat: [0; ROOM], from: [[0.0; ROOM]; 3], to: [[0.0; ROOM]; 3] }
+        Ways { base: [0; ROOM], from: [[0.0; ROOM]; 3], to: [[0.0; ROOM]; 3] }
     }
 
     #[inline(always)]
     fn append<L: Lanes>(&mut self, at: usize, chosen: L::Mask, way: &Way<L>) {
-        way.corners.base.compress(chosen).store(&mut self.base[at..]);
-        way.seat.compress(chosen).store(&mut self.seat[at..]);
+        way.base.compress(chosen).store(&mut self.base[at..]);
         for a in 0..3 {
-            way.corners.cell[a].compress(chosen).store(&mut self.cell[a][at..]);
             way.from[a].compress(chosen).store(&mut self.from[a][at..]);
             way.to[a].compress(chosen).store(&mut self.to[a][at..]);
         }
@@ -124,14 +134,8 @@ impl Ways {
     /// As many as a register has lanes.
     #[inline(always)]
     pub(super) fn load<L: Lanes>(&self, first: usize) -> Way<L> {
-        let mut way = Way {
-            corners: Corners { cell: [L::Ints::splat(0); 3], base: L::Ints::load(&self.base[first..]) },
-            seat: L::Ints::load(&self.seat[first..]),
-            from: [L::ZERO; 3],
-            to: [L::ZERO; 3],
-        };
+        let mut way = Way { base: L::Ints::load(&self.base[first..]), from: [L::ZERO; 3], to: [L::ZERO; 3] };
         for a in 0..3 {
-            way.corners.cell[a] = L::Ints::load(&self.cell[a][first..]);
             way.from[a] = L::load(&self.from[a][first..]);
             way.to[a] = L::load(&self.to[a][first..]);
         }
@@ -146,7 +150,7 @@ pub(super) struct Results {
     pub(super) absorbed: [f32; CELLS],
     /// Infinite where the cell must be integrated again.
     pub(super) error: [f32; CELLS],
-    /// Variance of what the nodes of pieces miss.
+    /// Variance of what the nodes of pieces miss; 0 where errors are proven.
     pub(super) variance: [f32; CELLS],
     /// Pieces integrated; 0 where nothing shows, and where nothing else is said.
     pub(super) pieces: [f32; CELLS],
@@ -165,13 +169,23 @@ impl Results {
 
     /// Sets those of some lanes' cells, which are in these slots.
     #[inline(always)]
-    pub(super) fn put<L: Lanes>(&mut self, lanes: L::Mask, slots: &[i32], integral: &Integral<L>, variance: L, pieces: L) {
+    pub(super) fn put<L: Lanes>(
+        &mut self,
+        lanes: L::Mask,
+        slots: &[i32],
+        integral: &Integral<L>,
+        variance: Option<L>,
+        pieces: L,
+    ) {
         let mut numbers = [[0.0; BATCH]; 7];
         let [r, g, b] = integral.radiance;
         // Summed over pieces, it may be more by a rounding.
         let absorbed = integral.absorbed.min(L::ONE);
-        for (row, x) in numbers.iter_mut().zip([r, g, b, absorbed, integral.error, pieces, variance]) {
+        for (row, x) in numbers.iter_mut().zip([r, g, b, absorbed, integral.error, pieces]) {
             x.store(row);
+        }
+        if let Some(variance) = variance {
+            variance.store(&mut numbers[6]);
         }
         let mut left = lanes.bits();
         while left != 0 {
@@ -184,7 +198,9 @@ impl Results {
             self.absorbed[slot] = numbers[3][k];
             self.error[slot] = numbers[4][k];
             self.pieces[slot] = numbers[5][k];
-            self.variance[slot] = numbers[6][k];
+            if variance.is_some() {
+                self.variance[slot] = numbers[6][k];
+            }
         }
     }
 

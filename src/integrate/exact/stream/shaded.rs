@@ -84,18 +84,18 @@ impl<L: Lanes> Sight<L> {
 
 impl<V: Voxel + Pairs> Scenery<'_, '_, V> {
     #[inline(always)]
-    fn sight<L: Lanes>(&self, way: &Way<L>, are_cells: L::Mask) -> Sight<L> {
-        self.seen_from(self.gradient(way, are_cells), way.seat)
+    fn sight<L: Lanes>(&self, way: &Way<L>, are_inner: bool, seat: L::Ints) -> Sight<L> {
+        self.seen_from(self.gradient(way, are_inner), seat)
     }
 
     /// The gradient along cells.
     #[inline(always)]
-    fn gradient<L: Lanes>(&self, way: &Way<L>, are_cells: L::Mask) -> [Powers<L>; 3] {
-        let gradients = if self.voxels.are_inner::<L>(&way.corners.cell, are_cells) {
-            self.voxels.inner_gradients::<L>(way.corners.base)
+    fn gradient<L: Lanes>(&self, way: &Way<L>, are_inner: bool) -> [Powers<L>; 3] {
+        let gradients = if are_inner {
+            self.voxels.inner_gradients::<L>(way.base)
         } else {
-            let corners = self.voxels.corners::<L>(way.corners.base);
-            self.voxels.gradients(&way.corners, &corners)
+            let corners = self.voxels.corners::<L>(way.base);
+            self.voxels.gradients(&self.voxels.corners_at::<L>(way.base), &corners)
         };
         each(
             #[inline(always)]
@@ -160,8 +160,8 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
             interval[f] = L::Ints::load(&shown.interval[f][first..]);
         }
         let length_mm = L::load(&shown.length_mm[first..]);
-        let way = shown.way.load(first);
-        let sight = scenery.sight::<L>(&way, is_cell);
+        let seat = shown.seats::<L>(first);
+        let sight = scenery.sight::<L>(&shown.way.load(first), shown.are_inner, seat);
         let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, [L::ZERO, L::ONE]);
         let mut integral = function.integrate(interval, &fields, length_mm, &light);
         let missed = scenery.missed(&light, &integral);
@@ -171,7 +171,7 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
         if refused.any() {
             let part = Part {
                 slot: L::Ints::load(&shown.slot[first..]),
-                seat: way.seat,
+                seat,
                 fields: each(
                     #[inline(always)]
                     |f| powers::of(&fields[f]),
@@ -190,7 +190,7 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
             missed = L::select(refused, L::ZERO, missed);
             integral.error = L::select(refused, L::ZERO, integral.error);
         }
-        put(results, shown, first, &integral, missed * missed, L::ONE);
+        put(results, shown, first, &integral, Some(missed * missed), L::ONE);
     }
 }
 
@@ -207,8 +207,7 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
 ) {
     beginnings.prepare::<L>(shown, function);
     for first in (0..shown.count).step_by(L::LANES) {
-        let is_cell = (L::Ints::count() + splat::<L>(first)).lt(splat::<L>(shown.count));
-        let gradient = scenery.gradient::<L>(&shown.way.load(first), is_cell);
+        let gradient = scenery.gradient::<L>(&shown.way.load(first), shown.are_inner);
         for (rows, powers) in gradients.iter_mut().flatten().zip(gradient.iter().flatten()) {
             powers.store(&mut rows[first..]);
         }
@@ -221,6 +220,7 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let open = cells.attend(
             shown,
             beginnings,
+            true,
             results,
             #[inline(always)]
             |taken| {
@@ -228,7 +228,7 @@ pub(super) fn cut<L: Lanes, V: Voxel + Pairs, const F: usize>(
                 for a in 0..3 {
                     taken.powers(&gradients[a], &mut gradient[a]);
                 }
-                seat = taken.ints(&shown.way.seat, seat);
+                seat = taken.seats(shown, seat);
                 sight = scenery.seen_from(gradient, seat);
             },
         );

@@ -78,36 +78,62 @@ impl<L: Lanes> Finish<L> for AtNodes<'_, L> {
             },
         );
         let mean = Mean { linear, seen, seen_distance, per_total };
-        let mut radiance = unlit.radiance;
-        let mut factors = [number(self.lighting.ambient); 3];
-        let mut drift = L::ZERO;
-        let brightest_unlit = unlit.radiance[0].max(unlit.radiance[1]).max(unlit.radiance[2]);
-        let mut shine = [L::ZERO; 3];
-        for (n, color) in self.lighting.colors.iter().enumerate().take(LIGHTS) {
-            let sums = mean.sums(&self.lambert[n]);
-            for c in 0..3 {
-                let lambert = mean.of(c, &sums, self.lighting.diffuse);
-                factors[c] = lambert.mul_plus(number(f64::from(color[c])), factors[c]);
-            }
-            let mut varies = brightest_unlit * range(&self.lambert[n]);
-            if self.lighting.specular != 0.0 {
-                let gloss = unlit.absorbed * mean.of(3, &mean.sums(&self.gloss[n]), self.lighting.specular);
-                for c in 0..3 {
-                    shine[c] = gloss.mul_plus(number(f64::from(color[c])), shine[c]);
-                }
-                varies = unlit.absorbed.mul_plus(range(&self.gloss[n]), varies);
-            }
-            drift = varies.mul_plus(number(brightest(color)), drift);
+        let mut lit = Lit { factors: [number(self.lighting.ambient); 3], shine: [L::ZERO; 3], drift: L::ZERO };
+        // One by one, as the lights' terms are.
+        if let Some(color) = self.lighting.colors.first() {
+            self.add(&mut lit, color, &self.lambert[0], &self.gloss[0], &mean, &unlit);
         }
+        if let Some(color) = self.lighting.colors.get(1) {
+            self.add(&mut lit, color, &self.lambert[1], &self.gloss[1], &mean, &unlit);
+        }
+        let mut radiance = unlit.radiance;
         for c in 0..3 {
-            radiance[c] = factors[c].mul_plus(radiance[c], shine[c]);
+            radiance[c] = lit.factors[c].mul_plus(radiance[c], lit.shine[c]);
         }
         let depth = length_mm * linear.at(3, linear.mean_distance());
-        Integral { radiance, error: self.error(&unlit, depth, drift), ..unlit }
+        Integral { radiance, error: self.error(&unlit, depth, lit.drift), ..unlit }
     }
 }
 
+/// What lights do to a piece.
+struct Lit<L> {
+    /// Of the emission.
+    factors: [L; 3],
+    /// Light that is added.
+    shine: [L; 3],
+    /// By how much the light may change where it is seen elsewhere.
+    drift: L,
+}
+
 impl<L: Lanes> AtNodes<'_, L> {
+    /// Adds a light.
+    #[inline(always)]
+    fn add(
+        &self,
+        lit: &mut Lit<L>,
+        color: &[f32; 3],
+        lambert: &[L; NODES],
+        gloss: &[L; NODES],
+        mean: &Mean<'_, L>,
+        unlit: &Integral<L>,
+    ) {
+        let sums = mean.sums(lambert);
+        for c in 0..3 {
+            let lambert = mean.of(c, &sums, self.lighting.diffuse);
+            lit.factors[c] = lambert.mul_plus(L::splat(color[c]), lit.factors[c]);
+        }
+        let [red, green, blue] = unlit.radiance;
+        let mut varies = red.max(green).max(blue) * range(lambert);
+        if self.lighting.specular != 0.0 {
+            let shine = unlit.absorbed * mean.of(3, &mean.sums(gloss), self.lighting.specular);
+            for c in 0..3 {
+                lit.shine[c] = shine.mul_plus(L::splat(color[c]), lit.shine[c]);
+            }
+            varies = unlit.absorbed.mul_plus(range(gloss), varies);
+        }
+        lit.drift = varies.mul_plus(L::from_f64(brightest(color)), lit.drift);
+    }
+
     /// The error of a shaded piece that is so deep, by what its unshaded integral may miss, and by how much its light may change if
     /// seen elsewhere.
     #[inline(always)]

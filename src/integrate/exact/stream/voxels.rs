@@ -5,7 +5,7 @@ use glam::DMat3;
 use crate::field::{BlockRanges, Trilinear, Voxel};
 use crate::integrate::occupancy::Occupancy;
 use crate::math::{Number, each};
-use crate::simd::{Ints, Lanes, Mask, Pairs};
+use crate::simd::{BATCH, Ints, Lanes, Mask, Pairs};
 use crate::volume::{Rescale, Volume};
 
 /// Stored samples by voxel index, with what a gradient in HU/mm needs. Every axis has at least two voxels.
@@ -121,27 +121,29 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     pub(super) fn inner_gradients<L: Lanes>(&self, base: L::Ints) -> [[L; 8]; 3] {
         let [_, row, slab] = self.strides();
         let half = L::from_f64(0.5);
-        let rows = [0, row, slab, row + slab];
         let before = base - splat::<L>(1);
-        let mut corners = [L::ZERO; 8];
-        let mut per_index = [[L::ZERO; 8]; 3];
-        for row in 0..4 {
-            let [a, b, c, d] = V::quads::<L>(self.samples, before + L::Ints::splat(rows[row]));
-            (corners[2 * row], corners[2 * row + 1]) = (b, c);
-            (per_index[0][2 * row], per_index[0][2 * row + 1]) = ((c - a) * half, (d - b) * half);
-        }
-        for (axis, stride, along, next) in [(1, row, slab, 4), (2, slab, row, 2)] {
-            let beyond = [-stride, 2 * stride, along - stride, along + 2 * stride];
-            let [below, above, next_below, next_above] = V::pairs_around::<L, 4>(self.samples, base, beyond);
-            for (side, (below, above)) in [(below, above), (next_below, next_above)].into_iter().enumerate() {
-                for x in 0..2 {
-                    let low = side * next + x;
-                    let high = low + (6 - next);
-                    per_index[axis][low] = (corners[high] - below[x]) * half;
-                    per_index[axis][high] = (above[x] - corners[low]) * half;
-                }
-            }
-        }
+        // Corner by corner, in place of loops over arrays that would be cleared first.
+        let [a, c0, c1, b] = V::quads::<L>(self.samples, before);
+        let [d, c2, c3, e] = V::quads::<L>(self.samples, before + L::Ints::splat(row));
+        let [f, c4, c5, g] = V::quads::<L>(self.samples, before + L::Ints::splat(slab));
+        let [h, c6, c7, i] = V::quads::<L>(self.samples, before + L::Ints::splat(row + slab));
+        let x = [c1 - a, b - c0, c3 - d, e - c2, c5 - f, g - c4, c7 - h, i - c6];
+        let beyond = [-row, 2 * row, slab - row, slab + 2 * row];
+        let [[a, b], [c, d], [e, f], [g, h]] = V::pairs_around::<L, 4>(self.samples, base, beyond);
+        let y = [c2 - a, c3 - b, c - c0, d - c1, c6 - e, c7 - f, g - c4, h - c5];
+        let beyond = [-slab, 2 * slab, row - slab, row + 2 * slab];
+        let [[a, b], [c, d], [e, f], [g, h]] = V::pairs_around::<L, 4>(self.samples, base, beyond);
+        let z = [c4 - a, c5 - b, c6 - e, c7 - f, c - c0, d - c1, g - c2, h - c3];
+        let differences = [x, y, z];
+        let per_index = each(
+            #[inline(always)]
+            |axis| {
+                each(
+                    #[inline(always)]
+                    |c| differences[axis][c] * half,
+                )
+            },
+        );
         self.per_mm(&per_index)
     }
 
@@ -149,28 +151,52 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     #[inline(always)]
     fn per_mm<L: Lanes>(&self, per_index: &[[L; 8]; 3]) -> [[L; 8]; 3] {
         let m = self.to_value_per_mm.to_cols_array_2d();
-        let mut gradients = [[L::ZERO; 8]; 3];
         // As in most scans.
         if self.is_diagonal {
-            for a in 0..3 {
-                let scale = L::from_f64(m[a][a]);
-                for c in 0..8 {
-                    gradients[a][c] = scale * per_index[a][c];
-                }
-            }
-            return gradients;
-        }
-        for (row, component) in gradients.iter_mut().enumerate() {
-            *component = each(
+            return each(
                 #[inline(always)]
-                |c| {
-                    let [x, y, z] = per_index;
-                    let z = L::from_f64(m[2][row]) * z[c];
-                    x[c].mul_plus(L::from_f64(m[0][row]), y[c].mul_plus(L::from_f64(m[1][row]), z))
+                |a| {
+                    each(
+                        #[inline(always)]
+                        |c| L::from_f64(m[a][a]) * per_index[a][c],
+                    )
                 },
             );
         }
-        gradients
+        each(
+            #[inline(always)]
+            |row| {
+                each(
+                    #[inline(always)]
+                    |c| {
+                        let [x, y, z] = per_index;
+                        let z = L::from_f64(m[2][row]) * z[c];
+                        x[c].mul_plus(L::from_f64(m[0][row]), y[c].mul_plus(L::from_f64(m[1][row]), z))
+                    },
+                )
+            },
+        )
+    }
+
+    /// The lower corner of a cell by its place in memory, voxel indices.
+    pub(super) fn cell(&self, base: i32) -> [i32; 3] {
+        let [_, row, slab] = self.strides();
+        [base % row, base % slab / row, base / slab]
+    }
+
+    /// The same of many.
+    #[inline(always)]
+    pub(super) fn corners_at<L: Lanes>(&self, base: L::Ints) -> Corners<L::Ints> {
+        let (mut bases, mut cells) = ([0; BATCH], [[0; BATCH]; 3]);
+        base.store(&mut bases);
+        for (k, &base) in bases[..L::LANES].iter().enumerate() {
+            [cells[0][k], cells[1][k], cells[2][k]] = self.cell(base);
+        }
+        let cell = each(
+            #[inline(always)]
+            |a| L::Ints::load(&cells[a]),
+        );
+        Corners { cell, base }
     }
 
     /// Whether all these cells have neighbours on all sides.

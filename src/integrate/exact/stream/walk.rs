@@ -144,8 +144,10 @@ impl Walks {
         self.at_mm[seat] = self.exit_mm[seat];
     }
 
-    pub(super) fn is_over(&self, seat: usize) -> bool {
-        self.at_mm[seat] >= self.exit_mm[seat]
+    /// Which rays have left the volume, from a seat on.
+    #[inline(always)]
+    pub(super) fn are_over<L: Lanes>(&self, first: usize) -> L::Mask {
+        L::Doubles::load(&self.exit_mm[first..]).le(L::Doubles::load(&self.at_mm[first..]))
     }
 
     /// Lengths inside the volume, mm.

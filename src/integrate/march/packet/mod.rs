@@ -57,6 +57,8 @@ pub(in super::super) fn suits(settings: &March, grid: &Grid) -> bool {
 
 /// What is kept between tiles.
 struct Scratch {
+    /// The tile's pixels, neighbours together: their numbers, and where they are.
+    order: Vec<(usize, [usize; 2])>,
     rays: Rays,
     chords: Chords,
     pieces: Pieces,
@@ -71,6 +73,7 @@ struct Scratch {
 impl Scratch {
     fn new(lights: usize) -> Box<Self> {
         Box::new(Scratch {
+            order: Vec::new(),
             rays: Rays::default(),
             chords: Chords::default(),
             pieces: Pieces::new(),
@@ -129,14 +132,16 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Tile<'_, '_, V, C, S> {
     /// Cuts all rays into pieces.
     #[inline(always)]
     fn cut(&self, scratch: &mut Scratch) {
-        let Scratch { rays, chords, pieces, lights, met, halves, .. } = scratch;
-        rays.through(&self.frame.scene.camera, self.pixels.neighbours_first().map(|(_, pixel)| pixel));
+        let Scratch { order, rays, chords, pieces, lights, met, halves, .. } = scratch;
+        order.clear();
+        self.pixels.neighbours_first().for_each(|pixel| order.push(pixel));
+        rays.through(&self.frame.scene.camera, order.iter().map(|&(_, pixel)| pixel));
         let grid = self.frame.volume.grid();
         chords.of(grid, &self.frame.scene.effects.clip, rays);
         pieces.count = 0;
         met.clear();
         halves.clear();
-        for (k, (n, pixel)) in self.pixels.neighbours_first().enumerate() {
+        for (k, &(n, pixel)) in order.iter().enumerate() {
             let ray = rays.get(k);
             let Some((chord, stretches)) = self.sampling.along_chord(ray, pixel, || chords.get(k)) else { continue };
             met.push((n, pieces.count));
