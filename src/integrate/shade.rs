@@ -15,7 +15,7 @@ pub(super) trait Shader: Sync {
     /// Name in kernel names.
     const NAME: &'static str;
     /// What is constant along a ray.
-    type Aim: Default;
+    type Aim: Default + Send;
 
     /// Computes what is constant along a ray.
     fn aim(&self, course: &Course, aim: &mut Self::Aim);

@@ -3,6 +3,8 @@
 //! A pixel's arithmetic depends on nothing but the pixel, and each tile writes rows of its own, so the picture is the same
 //! to the bit for any number of threads and any order of tiles.
 
+use std::sync::{Mutex, PoisonError};
+
 use rayon::prelude::*;
 
 use super::Frame;
@@ -135,7 +137,7 @@ pub(super) fn render_whole(frame: &Frame<'_>, trace: TraceAll<'_>) -> (Image, Ta
 
 /// Renders all pixels, those of a tile at once: `trace` gives the light of those, by their number in the tile, whose rays meet
 /// the volume, in any order; `scratch` makes what a thread keeps between tiles.
-pub(super) fn render_together<W>(
+pub(super) fn render_together<W: Send>(
     frame: &Frame<'_>,
     scratch: impl Fn() -> W + Sync + Send,
     trace: impl Fn(&mut W, Pixels, &mut dyn FnMut(usize, Radiance)) + Sync,
@@ -153,7 +155,7 @@ pub(super) fn render_together<W>(
 
 /// Renders all pixels: `pixel` gives the light along the ray through `(column, row)`, `None` where it misses the volume;
 /// `scratch` makes what a thread keeps between pixels.
-pub(super) fn render<W>(
+pub(super) fn render<W: Send>(
     frame: &Frame<'_>,
     scratch: impl Fn() -> W + Sync + Send,
     pixel: impl Fn(&mut W, usize, usize) -> Option<Radiance> + Sync,
@@ -170,7 +172,7 @@ pub(super) fn render<W>(
 }
 
 /// Renders all tiles: `fill` renders one and counts what it took.
-fn render_tiles<W>(
+fn render_tiles<W: Send>(
     frame: &Frame<'_>,
     scratch: impl Fn() -> W + Sync + Send,
     fill: impl Fn(&mut W, &mut Tile<'_>, &mut Tally) + Sync,
@@ -181,12 +183,18 @@ fn render_tiles<W>(
     if let Some(seed) = frame.schedule.shuffled_tiles {
         shuffle(&mut tiles, seed);
     }
+    // Tasks of a tile each: what rayon keeps for a task would be made anew for every tile.
+    let kept = Mutex::new(Vec::new());
+    let waiting = || kept.lock().unwrap_or_else(PoisonError::into_inner);
     let tally = tiles
         .par_iter_mut()
         .with_max_len(1)
-        .map_init(&scratch, |scratch, tile| {
+        .map(|tile| {
+            let free = waiting().pop();
+            let mut scratch = free.unwrap_or_else(&scratch);
             let mut tally = Tally::default();
-            fill(scratch, tile, &mut tally);
+            fill(&mut scratch, tile, &mut tally);
+            waiting().push(scratch);
             (frame.progress)(tile.rows.iter().map(|row| row.len()).sum());
             tally
         })

@@ -11,7 +11,7 @@ use crate::simd::Lanes;
 /// What absorbs and emits. It reads of the volume what it needs, and nothing else; chosen by type, once per frame.
 pub(in super::super) trait Medium: Sync {
     /// What is constant along a ray.
-    type Aim: Default;
+    type Aim: Default + Send;
     /// Whether it reads the offsets of a batch.
     const BY_LANES: bool;
 
@@ -38,7 +38,7 @@ pub(in super::super) trait Medium: Sync {
 /// A medium that is sampled at one position at a time.
 pub(in super::super) trait Pointwise: Sync {
     /// What is constant along a ray.
-    type Aim: Default;
+    type Aim: Default + Send;
 
     /// Computes what is constant along a ray.
     fn aim(&self, course: &Course, aim: &mut Self::Aim);
