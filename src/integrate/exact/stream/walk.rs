@@ -225,8 +225,11 @@ impl Walks {
             let mut cells = [at; AHEAD];
             for n in (0..STEPS).step_by(AHEAD) {
                 lines.settle(&mut at);
-                for passed in &mut cells {
-                    lines.step(&mut at, occupancy);
+                let mut looks = <L::Mask as Mask>::ALL;
+                for (step, passed) in cells.iter_mut().enumerate() {
+                    let leapt = lines.step(&mut at, occupancy, looks);
+                    // Who is where something may show looks around again two steps later, who has just leapt one step later.
+                    looks = if step % 2 == 0 { leapt } else { <L::Mask as Mask>::ALL };
                     *passed = at;
                     lines.go_on(&mut at);
                 }
@@ -355,16 +358,18 @@ impl<L: Lanes> Lines<L> {
         }
     }
 
-    /// Leaps, and finds where rays leave the cells they have come to.
+    /// Lets those leap that look around, and finds where rays leave the cells they have come to. Says which have leapt.
     #[inline(always)]
-    fn step(&self, at: &mut Cells<L>, occupancy: &Occupancy) {
+    fn step(&self, at: &mut Cells<L>, occupancy: &Occupancy, looks: L::Mask) -> L::Mask {
         let none = at.from_mm.lt(at.from_mm);
         let (mut leapt, mut leaps) = (none, none);
-        for _ in 0..LEAPS {
-            leaps = self.leap(at, occupancy);
-            leapt = leapt.or(leaps);
-            if !leaps.any() {
-                break;
+        if looks.any() {
+            for _ in 0..LEAPS {
+                leaps = self.leap(at, occupancy, looks);
+                leapt = leapt.or(leaps);
+                if !leaps.any() {
+                    break;
+                }
             }
         }
         if leapt.any() {
@@ -375,6 +380,7 @@ impl<L: Lanes> Lines<L> {
         // Where rays are that have just leapt is not known yet; they stay there.
         at.to_mm = L::select(leaps, at.from_mm, to_mm);
         at.passes = at.from_mm.lt(at.to_mm);
+        leapt
     }
 
     /// Goes on to the next cells.
@@ -393,9 +399,9 @@ impl<L: Lanes> Lines<L> {
 
     /// Leaps over the empty cubes that rays have come to; says which did.
     #[inline(always)]
-    fn leap(&self, at: &mut Cells<L>, occupancy: &Occupancy) -> L::Mask {
+    fn leap(&self, at: &mut Cells<L>, occupancy: &Occupancy, looks: L::Mask) -> L::Mask {
         let log2_cells = occupancy.around::<L>(self.cell(at));
-        let is_empty = L::Ints::splat(0).lt(log2_cells).and(at.from_mm.lt(at.rest_mm));
+        let is_empty = looks.and(L::Ints::splat(0).lt(log2_cells)).and(at.from_mm.lt(at.rest_mm));
         if !is_empty.any() {
             return is_empty;
         }
