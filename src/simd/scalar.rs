@@ -1,8 +1,8 @@
 //! One lane: the twin of every register, on any processor.
 
-use super::lanes::{last_pair, last_quad};
 #[cfg(target_arch = "x86_64")]
 use super::Kernel;
+use super::lanes::{last_pair, last_quad};
 use super::{BATCH, Doubles, Ints, Lanes, Mask, TWO_BATCHES, Table};
 
 /// Runs a kernel compiled for fused operations, which are calls of a function elsewhere.

@@ -132,7 +132,13 @@ impl<L: Lanes, const F: usize> Runs<L, F> {
     /// Of no cells.
     #[inline(always)]
     pub(super) fn nowhere() -> Self {
-        let run = Run { powers: [L::ZERO; 4], critical: [L::ONE; 2], at: L::ZERO, interval: L::Ints::splat(0), rounding: L::ZERO };
+        let run = Run {
+            powers: [L::ZERO; 4],
+            critical: [L::ONE; 2],
+            at: L::ZERO,
+            interval: L::Ints::splat(0),
+            rounding: L::ZERO,
+        };
         Runs { runs: [run; F], misplaced: L::ONE.lt(L::ZERO) }
     }
 

@@ -226,10 +226,9 @@ impl Walks {
             for n in (0..STEPS).step_by(AHEAD) {
                 lines.settle(&mut at);
                 let mut looks = <L::Mask as Mask>::ALL;
-                for (step, passed) in cells.iter_mut().enumerate() {
-                    let leapt = lines.step(&mut at, occupancy, looks);
-                    // Who is where something may show looks around again two steps later, who has just leapt one step later.
-                    looks = if step % 2 == 0 { leapt } else { <L::Mask as Mask>::ALL };
+                for passed in &mut cells {
+                    // Who is where something may show looks around again in the next such steps, who has just leapt in the next one.
+                    looks = lines.step(&mut at, occupancy, looks);
                     *passed = at;
                     lines.go_on(&mut at);
                 }
