@@ -215,7 +215,7 @@ impl Plan {
         work::expected(&self.scene, &self.method, &self.grid)
     }
 
-    /// Bytes on the heap at peak, estimated; the program and its threads' stacks take some 10 MB beside it.
+    /// Bytes on the heap at peak, estimated; the program, its threads' stacks and what threads keep take some 10 MB beside it.
     pub fn memory_bytes(&self) -> u64 {
         self.peak().1
     }
