@@ -144,6 +144,27 @@ impl Lanes for F32x16 {
         }
     }
     #[inline(always)]
+    fn vectors(from: &[[f32; 4]], at: I32x16) -> [Self; 3] {
+        unsafe {
+            let quarters = quarters(_mm512_min_epu32(at.0, _mm512_set1_epi32(last(from) as i32)));
+            let places = [indices(quarters[0]), indices(quarters[1]), indices(quarters[2]), indices(quarters[3])];
+            let vector = |quarter: usize, k: usize| _mm_loadu_ps(from.as_ptr().add(places[quarter][k]).cast());
+            // The k-th of each quarter.
+            let row = |k: usize| {
+                let row = _mm512_insertf32x4::<1>(_mm512_castps128_ps512(vector(0, k)), vector(1, k));
+                _mm512_insertf32x4::<3>(_mm512_insertf32x4::<2>(row, vector(2, k)), vector(3, k))
+            };
+            let (a, b, c, d) = (row(0), row(1), row(2), row(3));
+            let (xy, zw) = (_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
+            let (xy_next, zw_next) = (_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
+            [
+                F32x16(_mm512_shuffle_ps::<0b01_00_01_00>(xy, xy_next)),
+                F32x16(_mm512_shuffle_ps::<0b11_10_11_10>(xy, xy_next)),
+                F32x16(_mm512_shuffle_ps::<0b01_00_01_00>(zw, zw_next)),
+            ]
+        }
+    }
+    #[inline(always)]
     fn load(from: &[f32]) -> Self {
         F32x16(unsafe { _mm512_loadu_ps(from[..16].as_ptr()) })
     }

@@ -22,6 +22,14 @@ pub(crate) trait Lanes: Number {
     fn to_doubles(self) -> Self::Doubles;
     /// Numbers of a slice of at least one; indices beyond its end give its last one.
     fn gather(from: &[f32], at: Self::Ints) -> Self;
+    /// Vectors of a slice of at least one, each the first three of four numbers; indices beyond its end give some other of its
+    /// numbers.
+    #[inline(always)]
+    fn vectors(from: &[[f32; 4]], at: Self::Ints) -> [Self; 3] {
+        let (numbers, first) = (from.as_flattened(), at * Self::Ints::splat(4));
+        let (second, third) = (first + Self::Ints::splat(1), first + Self::Ints::splat(2));
+        [Self::gather(numbers, first), Self::gather(numbers, second), Self::gather(numbers, third)]
+    }
     /// The same number in every lane.
     #[inline(always)]
     fn splat(x: f32) -> Self {

@@ -29,7 +29,7 @@ impl Kernel for Everything {
         let wholes: Vec<i32> = samples.iter().map(|&x| i32::from(x) * 77).collect();
         let sixteen: [f32; BATCH] = std::array::from_fn(|i| b[i]);
         let thirty_two: [f32; TWO_BATCHES] = std::array::from_fn(|i| b[i]);
-        let mut out = vec![Vec::new(); 60];
+        let mut out = vec![Vec::new(); 80];
         for at in (0..4096).step_by(L::LANES) {
             let (x, y) = (L::load(&a[at..]), L::load(&b[at..]));
             let places = L::Ints::load(&places[at..]);
@@ -56,6 +56,7 @@ impl Kernel for Everything {
                 L::pick(&tables[2], places),
                 L::from_ints(places + whole - L::Ints::splat(3)),
                 x.mul_plus(y, x),
+                x.minus_product(y, y),
                 L::select(x.le(x).and(less), x, y),
                 L::select(less.or(y.lt(L::ZERO)), x, y),
                 L::select(<L::Mask as Mask>::ALL.and_not(less), x, y),
@@ -89,16 +90,22 @@ impl Kernel for Everything {
             ];
             let mut lanes = vec![0.0; L::LANES];
             let pairs = [first, second, third, fourth];
+            let near = places.and(L::Ints::splat(0xff)) + L::Ints::splat(8);
+            let of_i16 = i16::pairs_around::<L, 2>(&samples, near, [-3, 2]);
+            let around = [of_i16, f32::pairs_around::<L, 2>(&b, near, [5, 0])].concat().concat();
+            let vectors = L::vectors(b.as_chunks::<4>().0, near);
             let quads = [i16::quads::<L>(&samples, places), f32::quads::<L>(&b, places)].concat();
-            for (k, v) in found.into_iter().chain(pairs).chain(quads).chain(more).enumerate() {
+            for (k, v) in
+                found.into_iter().chain(pairs).chain(around).chain(vectors).chain(quads).chain(more).enumerate()
+            {
                 v.store(&mut lanes);
                 out[k].extend(lanes.iter().map(|v| v.to_bits()));
             }
         }
         for batch in a.as_chunks::<BATCH>().0 {
             let (before, all) = L::accumulated(&batch.map(|x| crate::math::absorbed_f32(x.abs())));
-            out[50].extend(before.map(f32::to_bits));
-            out[51].extend([(all + L::sum(batch)).to_bits(); BATCH]);
+            out[78].extend(before.map(f32::to_bits));
+            out[79].extend([(all + L::sum(batch)).to_bits(); BATCH]);
         }
         out.concat()
     }

@@ -105,10 +105,7 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
         cells.exit_mm().store(&mut passed.exit_mm[slot..]);
         let slots = L::Ints::count() + L::Ints::splat(slot as i32);
         let length_mm = cells.to_mm - cells.from_mm;
-        let way = is_lit.then(
-            #[inline(always)]
-            || Way { base: at.base, from, to },
-        );
+        let way = is_lit.then_some(Way { base: at.base, from, to });
         if is_lit {
             let are_inner = voxels.are_inner::<L>(&at.cell, shows);
             whole.are_inner &= are_inner;

@@ -25,7 +25,7 @@ pub(super) struct Visible {
 
 /// The half vectors of lights, by the number of a piece.
 pub(super) struct Halves {
-    of_light: Vec<[Vec<f32>; 3]>,
+    of_light: Vec<Vec<[f32; 4]>>,
 }
 
 impl Halves {
@@ -34,22 +34,19 @@ impl Halves {
     }
 
     pub(super) fn clear(&mut self) {
-        self.of_light.iter_mut().flatten().for_each(Vec::clear);
+        self.of_light.iter_mut().for_each(Vec::clear);
     }
 
     /// Adds that of the next piece.
     #[inline(always)]
-    pub(super) fn add(&mut self, light: usize, half: [f32; 3]) {
-        for (axis, x) in self.of_light[light].iter_mut().zip(half) {
-            axis.push(x);
-        }
+    pub(super) fn add(&mut self, light: usize, [x, y, z]: [f32; 3]) {
+        self.of_light[light].push([x, y, z, 0.0]);
     }
 
     /// Those of these pieces.
     #[inline(always)]
     fn of<L: Lanes>(&self, light: usize, piece: L::Ints) -> [L; 3] {
-        let [x, y, z] = &self.of_light[light];
-        [L::gather(x, piece), L::gather(y, piece), L::gather(z, piece)]
+        L::vectors(&self.of_light[light], piece)
     }
 }
 
