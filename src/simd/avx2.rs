@@ -254,6 +254,14 @@ impl Lanes for F32x8 {
     fn expand(self, mask: Mask8) -> Self {
         F32x8(unsafe { _mm256_permutevar8x32_ps(self.0, ranks(mask)) })
     }
+    #[inline(always)]
+    fn among(self, other: Self, at: I32x8) -> Self {
+        unsafe {
+            let (low, high) = (_mm256_permutevar8x32_ps(self.0, at.0), _mm256_permutevar8x32_ps(other.0, at.0));
+            // Bit 3 of the number, moved to the sign, chooses the register.
+            F32x8(_mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32::<28>(at.0))))
+        }
+    }
 }
 
 operators!(F64x8, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd);
@@ -452,6 +460,11 @@ impl Ints for I32x8 {
     #[inline(always)]
     fn expand(self, mask: Mask8) -> Self {
         I32x8(unsafe { _mm256_permutevar8x32_epi32(self.0, ranks(mask)) })
+    }
+    #[inline(always)]
+    fn among(self, other: Self, at: Self) -> Self {
+        let (low, high) = unsafe { (_mm256_castsi256_ps(self.0), _mm256_castsi256_ps(other.0)) };
+        I32x8(unsafe { _mm256_castps_si256(F32x8(low).among(F32x8(high), at).0) })
     }
 }
 

@@ -103,6 +103,21 @@ unsafe fn four_pairs(from: *const i16, places: [usize; 4]) -> __m128i {
     }
 }
 
+/// Four neighbours each, in one read of 64 bits: likewise.
+///
+/// # Safety
+/// All four must be there.
+#[inline(always)]
+unsafe fn four_quads(from: *const i16, places: [usize; 4]) -> __m256i {
+    // SAFETY: the caller's.
+    unsafe {
+        let read = |k: usize| from.add(places[k]).cast::<f64>();
+        let first = _mm_loadh_pd(_mm_load_sd(read(0)), read(1));
+        let second = _mm_loadh_pd(_mm_load_sd(read(2)), read(3));
+        _mm256_castpd_si256(_mm256_set_m128d(second, first))
+    }
+}
+
 /// The lower and the upper 16 bits of each lane, signed.
 #[inline(always)]
 fn halves(both: __m512i) -> [F32x16; 2] {
@@ -162,6 +177,26 @@ impl Lanes for F32x16 {
                 F32x16(_mm512_shuffle_ps::<0b11_10_11_10>(xy, xy_next)),
                 F32x16(_mm512_shuffle_ps::<0b01_00_01_00>(zw, zw_next)),
             ]
+        }
+    }
+    #[inline(always)]
+    fn store_vectors([x, y, z, w]: [Self; 4], to: &mut [[f32; 4]; BATCH]) {
+        unsafe {
+            let (xy, xy_next) = (_mm512_unpacklo_ps(x.0, y.0), _mm512_unpackhi_ps(x.0, y.0));
+            let (zw, zw_next) = (_mm512_unpacklo_ps(z.0, w.0), _mm512_unpackhi_ps(z.0, w.0));
+            // The k-th vector of each quarter.
+            let first = _mm512_shuffle_ps::<0b01_00_01_00>(xy, zw);
+            let second = _mm512_shuffle_ps::<0b11_10_11_10>(xy, zw);
+            let third = _mm512_shuffle_ps::<0b01_00_01_00>(xy_next, zw_next);
+            let fourth = _mm512_shuffle_ps::<0b11_10_11_10>(xy_next, zw_next);
+            // Quarters 0 and 1 of two, quarters 2 and 3 of two, then a quarter of all four.
+            let (low, high) = (_mm512_shuffle_f32x4::<0x44>(first, second), _mm512_shuffle_f32x4::<0x44>(third, fourth));
+            let to = to.as_mut_ptr().cast::<f32>();
+            _mm512_storeu_ps(to, _mm512_shuffle_f32x4::<0x88>(low, high));
+            _mm512_storeu_ps(to.add(16), _mm512_shuffle_f32x4::<0xdd>(low, high));
+            let (low, high) = (_mm512_shuffle_f32x4::<0xee>(first, second), _mm512_shuffle_f32x4::<0xee>(third, fourth));
+            _mm512_storeu_ps(to.add(32), _mm512_shuffle_f32x4::<0x88>(low, high));
+            _mm512_storeu_ps(to.add(48), _mm512_shuffle_f32x4::<0xdd>(low, high));
         }
     }
     #[inline(always)]
@@ -295,9 +330,12 @@ impl Lanes for F32x16 {
     fn quads_i16(samples: &[i16], at: I32x16) -> [Self; 4] {
         unsafe {
             let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_quad(samples) as i32));
-            // Four neighbours in one read of 64 bits, for half of the lanes at a time.
-            let low = _mm512_i32gather_epi64::<2>(_mm512_castsi512_si256(at), samples.as_ptr().cast());
-            let high = _mm512_i32gather_epi64::<2>(_mm512_extracti32x8_epi32::<1>(at), samples.as_ptr().cast());
+            let from = samples.as_ptr();
+            let [first, second, third, fourth] = quarters(at);
+            let low = _mm512_castsi256_si512(four_quads(from, indices(first)));
+            let low = _mm512_inserti64x4::<1>(low, four_quads(from, indices(second)));
+            let high = _mm512_castsi256_si512(four_quads(from, indices(third)));
+            let high = _mm512_inserti64x4::<1>(high, four_quads(from, indices(fourth)));
             let even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
             let odd = _mm512_add_epi32(even, _mm512_set1_epi32(1));
             let [first, second] = halves(_mm512_permutex2var_epi32(low, even, high));
@@ -347,6 +385,10 @@ impl Lanes for F32x16 {
     #[inline(always)]
     fn expand(self, mask: Mask16) -> Self {
         F32x16(unsafe { _mm512_maskz_expand_ps(mask.0, self.0) })
+    }
+    #[inline(always)]
+    fn among(self, other: Self, at: I32x16) -> Self {
+        F32x16(unsafe { _mm512_permutex2var_ps(self.0, at.0, other.0) })
     }
 }
 
@@ -468,6 +510,10 @@ impl Ints for I32x16 {
     #[inline(always)]
     fn expand(self, mask: Mask16) -> Self {
         I32x16(unsafe { _mm512_maskz_expand_epi32(mask.0, self.0) })
+    }
+    #[inline(always)]
+    fn among(self, other: Self, at: Self) -> Self {
+        I32x16(unsafe { _mm512_permutex2var_epi32(self.0, at.0, other.0) })
     }
 }
 

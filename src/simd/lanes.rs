@@ -30,6 +30,17 @@ pub(crate) trait Lanes: Number {
         let (second, third) = (first + Self::Ints::splat(1), first + Self::Ints::splat(2));
         [Self::gather(numbers, first), Self::gather(numbers, second), Self::gather(numbers, third)]
     }
+    /// Vectors of four numbers, lane by lane.
+    #[inline(always)]
+    fn store_vectors(numbers: [Self; 4], to: &mut [[f32; 4]; BATCH]) {
+        let mut rows = [[0.0; BATCH]; 4];
+        for c in 0..4 {
+            numbers[c].store(&mut rows[c]);
+        }
+        for (k, to) in to[..Self::LANES].iter_mut().enumerate() {
+            *to = [rows[0][k], rows[1][k], rows[2][k], rows[3][k]];
+        }
+    }
     /// The same number in every lane.
     #[inline(always)]
     fn splat(x: f32) -> Self {
@@ -80,6 +91,8 @@ pub(crate) trait Lanes: Number {
     fn compress(self, mask: Self::Mask) -> Self;
     /// The first lanes, in order, where the mask is true; the others are unspecified.
     fn expand(self, mask: Self::Mask) -> Self;
+    /// Lanes by their numbers, those of `other` behind those of `self`; other numbers give any lane.
+    fn among(self, other: Self, at: Self::Ints) -> Self;
 
     /// Opacities in the order in which light meets them, combined: of all before each, and of all of them. `a ∘ b = a + b − a b`
     /// is accurate however small they are; in a tree of four levels, the same at every level of instructions.
@@ -182,6 +195,8 @@ pub(crate) trait Ints:
     fn compress(self, mask: Self::Mask) -> Self;
     /// The first lanes, in order, where the mask is true; the others are unspecified.
     fn expand(self, mask: Self::Mask) -> Self;
+    /// Lanes by their numbers, those of `other` behind those of `self`; other numbers give any lane.
+    fn among(self, other: Self, at: Self) -> Self;
 }
 
 /// Truths side by side.

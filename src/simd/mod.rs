@@ -11,6 +11,7 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod joining;
 mod lanes;
 mod level;
 #[cfg(target_arch = "x86_64")]
@@ -20,9 +21,10 @@ mod table;
 
 pub use level::Level;
 
+pub(crate) use joining::Joining;
 pub(crate) use lanes::{Doubles, Ints, Lanes, Mask, Pairs};
 pub(crate) use level::Kernel;
-pub(crate) use table::Table;
+pub(crate) use table::{Table, Tables};
 
 /// Numbers in a register of the widest level. What is summed over neighbours is summed over so many at every level, in the
 /// same order.

@@ -111,6 +111,10 @@ impl Lanes for f32 {
     fn expand(self, _: bool) -> Self {
         self
     }
+    #[inline(always)]
+    fn among(self, other: Self, at: i32) -> Self {
+        if at == 0 { self } else { other }
+    }
 }
 
 impl Doubles for f64 {
@@ -233,6 +237,10 @@ impl Ints for i32 {
     #[inline(always)]
     fn expand(self, _: bool) -> Self {
         self
+    }
+    #[inline(always)]
+    fn among(self, other: Self, at: i32) -> Self {
+        if at == 0 { self } else { other }
     }
 }
 

@@ -1,5 +1,8 @@
 //! Small tables that lanes look up, each its own entry.
 
+use super::{BATCH, Lanes};
+use crate::math::each;
+
 /// A table of numbers for [`Lanes::pick`](super::Lanes::pick), padded so that whole registers of it can be read.
 #[derive(Debug, Clone)]
 pub(crate) struct Table {
@@ -8,7 +11,7 @@ pub(crate) struct Table {
 
 impl Table {
     /// Entries of the widest register: tables of so many, or twice as many, are looked up without touching memory.
-    pub(super) const REGISTER: usize = super::BATCH;
+    pub(super) const REGISTER: usize = BATCH;
 
     /// A table of these entries, at least one. What lies beyond them is the last one.
     pub(crate) fn new(entries: &[f32]) -> Self {
@@ -22,5 +25,43 @@ impl Table {
     #[inline(always)]
     pub(super) fn entries(&self) -> &[f32] {
         &self.entries
+    }
+}
+
+/// Tables of as many entries each, looked up together.
+#[derive(Debug, Clone)]
+pub(crate) struct Tables<const N: usize> {
+    /// The first entries of each, in a register.
+    few: [[f32; BATCH]; N],
+    are_few: bool,
+    all: [Table; N],
+}
+
+impl<const N: usize> Tables<N> {
+    /// Tables of the numbers of these entries, at least one.
+    pub(crate) fn new(entries: &[[f32; N]]) -> Self {
+        let last = entries.last().expect("a table has entries");
+        Tables {
+            few: each(|n| each(|k| entries.get(k).unwrap_or(last)[n])),
+            are_few: entries.len() <= BATCH,
+            all: std::array::from_fn(|n| Table::new(&entries.iter().map(|entry| entry[n]).collect::<Vec<f32>>())),
+        }
+    }
+
+    /// The numbers of these entries; indices beyond the end give the last ones.
+    #[inline(always)]
+    pub(crate) fn pick<L: Lanes>(&self, at: L::Ints) -> [L; N] {
+        if self.are_few {
+            // Asked for once, not once a table.
+            each(
+                #[inline(always)]
+                |n| L::pick16(&self.few[n], at),
+            )
+        } else {
+            each(
+                #[inline(always)]
+                |n| L::pick(&self.all[n], at),
+            )
+        }
     }
 }

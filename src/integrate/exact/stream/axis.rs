@@ -55,6 +55,11 @@ impl Axis {
         }
     }
 
+    /// Where an interval's function is anchored.
+    pub(super) fn anchor_of(&self, interval: usize) -> f32 {
+        self.knots[interval.saturating_sub(1)]
+    }
+
     /// Number of intervals, those beyond the ends included.
     pub(super) fn intervals(&self) -> usize {
         self.knots.len() + 1

@@ -19,7 +19,7 @@ pub(super) struct Fronts {
     spent: [f64; RAYS],
     /// Of errors that are estimated.
     variance: [f64; RAYS],
-    pieces: [f64; RAYS],
+    pieces: [f32; RAYS],
     /// Bound on what is left of a ray that ended before it left the volume.
     rest: [f64; RAYS],
     /// 1 for a ray that goes on, 0 for one that has ended and for an empty seat.
@@ -75,7 +75,7 @@ impl Fronts {
         self.opacity[seat] = light.opacity;
         self.spent[seat] = light.budget.spent();
         self.variance[seat] = light.variance;
-        self.pieces[seat] = light.pieces as f64;
+        self.pieces[seat] = light.pieces as f32;
     }
 
     /// A bit for each seat whose ray has ended, and for each empty one.
@@ -125,10 +125,10 @@ impl Fronts {
     ) {
         let splat = L::Doubles::splat;
         let [by_absorption, by_length] = Budget::of_pieces(self.tolerance);
-        let (by_absorption, by_length) = (splat(by_absorption), splat(by_length));
+        let by_absorption = splat(by_absorption);
+        let by_length_per_mm = splat(by_length) * L::Doubles::load(&walks.per_lengths_mm()[first..]);
         let most = splat(self.most_at_end);
         let (per_absorbed, per_mm) = (splat(self.brightest.per_absorbed), splat(self.brightest.per_mm));
-        let per_length_mm = L::Doubles::load(&walks.per_lengths_mm()[first..]);
         let length_mm = L::Doubles::load(&walks.lengths_mm()[first..]);
         let nothing = L::Ints::splat(0);
         let mut goes_on = nothing.lt(L::Ints::load(&self.goes_on[first..]));
@@ -145,7 +145,7 @@ impl Fronts {
             let absorbed = t * absorbed.to_doubles();
             let next = t - absorbed;
             let error = t * error.to_doubles();
-            let allowed = by_absorption * (splat(1.0) - next) + by_length * (exit_mm * per_length_mm);
+            let allowed = by_absorption * (splat(1.0) - next) + by_length_per_mm * exit_mm;
             // Nor does NaN fit.
             let fits = shows.and(error.le(allowed - sums.spent));
             for c in 0..3 {
@@ -159,7 +159,7 @@ impl Fronts {
                 let variance = t * t * L::load(&results.variance[slot..]).to_doubles();
                 sums.variance = L::Doubles::select(fits, sums.variance + variance, sums.variance);
             }
-            sums.pieces = L::Doubles::select(fits, sums.pieces + pieces.to_doubles(), sums.pieces);
+            sums.pieces = L::select(fits, sums.pieces + pieces, sums.pieces);
             let fails = shows.and_not(fits);
             if fails.any() {
                 sums.store(self, first);
@@ -170,12 +170,15 @@ impl Fronts {
                 }
                 sums = Sums::load(self, first);
             }
-            // What the rest of each ray may bring at most.
-            let rest = per_absorbed.min(per_mm * (length_mm - exit_mm)).max(splat(1.0));
-            let rest = sums.transmittance * rest;
-            let ends = shows.and((sums.spent + rest).le(most));
-            sums.rest = L::Doubles::select(ends, rest, sums.rest);
-            goes_on = goes_on.and_not(ends);
+            let is_faint = shows.and(sums.transmittance.le(most));
+            if is_faint.any() {
+                // What the rest of each ray may bring at most.
+                let rest = per_absorbed.min(per_mm * (length_mm - exit_mm)).max(splat(1.0));
+                let rest = sums.transmittance * rest;
+                let ends = is_faint.and((sums.spent + rest).le(most));
+                sums.rest = L::Doubles::select(ends, rest, sums.rest);
+                goes_on = goes_on.and_not(ends);
+            }
         }
         sums.store(self, first);
         L::Ints::select(goes_on, L::Ints::splat(1), nothing).store(&mut self.goes_on[first..]);
@@ -189,7 +192,7 @@ struct Sums<L: Lanes> {
     opacity: L::Doubles,
     spent: L::Doubles,
     variance: L::Doubles,
-    pieces: L::Doubles,
+    pieces: L,
     rest: L::Doubles,
 }
 
@@ -203,7 +206,7 @@ impl<L: Lanes> Sums<L> {
             opacity: L::Doubles::load(&fronts.opacity[first..]),
             spent: L::Doubles::load(&fronts.spent[first..]),
             variance: L::Doubles::load(&fronts.variance[first..]),
-            pieces: L::Doubles::load(&fronts.pieces[first..]),
+            pieces: L::load(&fronts.pieces[first..]),
             rest: L::Doubles::load(&fronts.rest[first..]),
         }
     }

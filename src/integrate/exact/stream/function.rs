@@ -7,7 +7,7 @@ use crate::integrate::exact::linear::{self, Linear};
 use crate::integrate::exact::piece::{Integral, Optics};
 use crate::math::bernstein::{Cubic, elevate, product};
 use crate::math::each;
-use crate::simd::{Ints, Lanes, Mask, Table};
+use crate::simd::{Ints, Lanes, Mask, Table, Tables};
 
 /// Components of emission and extinction.
 const COMPONENTS: usize = 4;
@@ -37,14 +37,12 @@ pub(in crate::integrate::exact) trait Function<const F: usize>: Sync {
 #[derive(Debug, Clone)]
 pub(in crate::integrate::exact) struct OfValue {
     axis: Axis,
-    low: [Table; COMPONENTS],
-    slope: [Table; COMPONENTS],
-    /// What [`Linear`] has of these.
-    drift: [Table; 3],
-    largest_drift: Table,
+    /// By interval, where its function is anchored, `α` and `β`, and of [`Linear`]'s `κ` those of the colours and the largest.
+    linear: Tables<13>,
     /// Lit intervals below each.
     lit_before: Table,
-    /// The values from the first lit interval to the last, and whether there are dark ones between.
+    /// The first lit interval and the last, their values, and whether there are dark ones between.
+    lit_intervals: [i32; 2],
     lit: [f32; 2],
     has_gaps: bool,
 }
@@ -68,10 +66,16 @@ impl OfValue {
                 )
             })
             .collect();
-        let table = |c: usize, k: usize| Table::new(&pieces.iter().map(|p| p[c][k]).collect::<Vec<f32>>());
-        let drifts: Vec<([f32; 3], f32)> =
-            pieces.iter().map(|p| linear::drift(&each(|c| p[c][0]), &each(|c| p[c][1]))).collect();
-        let drift = |c: usize| Table::new(&drifts.iter().map(|(drift, _)| drift[c]).collect::<Vec<f32>>());
+        let linear = |(i, piece): (usize, &[[f32; 2]; COMPONENTS])| {
+            let (low, slope): ([f32; 4], [f32; 4]) = (each(|c| piece[c][0]), each(|c| piece[c][1]));
+            let ([red, green, blue], largest) = linear::drift(&low, &slope);
+            let mut all = [axis.anchor_of(i); 13];
+            all[1..5].copy_from_slice(&low);
+            all[5..9].copy_from_slice(&slope);
+            all[9..].copy_from_slice(&[red, green, blue, largest]);
+            all
+        };
+        let linear: Vec<[f32; 13]> = pieces.iter().enumerate().map(linear).collect();
         let is_lit: Vec<bool> = pieces.iter().map(|piece| piece.iter().flatten().any(|&x| x != 0.0)).collect();
         let mut lit_before = vec![0.0];
         for &lit in &is_lit {
@@ -79,14 +83,13 @@ impl OfValue {
         }
         let ends = is_lit.iter().position(|&lit| lit).zip(is_lit.iter().rposition(|&lit| lit));
         let lit = ends.map_or([f32::INFINITY; 2], |(first, last)| [axis.lower_end(first), axis.lower_end(last + 1)]);
+        let lit_intervals = ends.map_or([i32::MAX, -1], |(first, last)| [first as i32, last as i32]);
         let has_gaps = ends.is_some_and(|(first, last)| is_lit[first..last].contains(&false));
         OfValue {
             axis,
-            low: std::array::from_fn(|c| table(c, 0)),
-            slope: std::array::from_fn(|c| table(c, 1)),
-            drift: std::array::from_fn(drift),
-            largest_drift: Table::new(&drifts.iter().map(|&(_, largest)| largest).collect::<Vec<f32>>()),
+            linear: Tables::new(&linear),
             lit_before: Table::new(&lit_before),
+            lit_intervals,
             lit,
             has_gaps,
         }
@@ -112,8 +115,13 @@ impl Function<1> for OfValue {
 
     #[inline(always)]
     fn is_empty<L: Lanes>(&self, [first]: [L::Ints; 1], [last]: [L::Ints; 1]) -> L::Mask {
-        let before = L::pick(&self.lit_before, first);
-        L::pick(&self.lit_before, last + L::Ints::splat(1)).le(before)
+        if self.has_gaps {
+            let before = L::pick(&self.lit_before, first);
+            L::pick(&self.lit_before, last + L::Ints::splat(1)).le(before)
+        } else {
+            let [first_lit, last_lit] = self.lit_intervals;
+            last.lt(L::Ints::splat(first_lit)).or(L::Ints::splat(last_lit).lt(first))
+        }
     }
 
     #[inline(always)]
@@ -124,24 +132,12 @@ impl Function<1> for OfValue {
         length_mm: L,
         finish: &impl Finish<L>,
     ) -> Integral<L> {
-        let anchor = self.axis.anchor::<L>(i);
+        let [anchor, a, b, c, d, e, f, g, h, red, green, blue, largest_drift] = self.linear.pick::<L>(i);
+        let (low, slope, drift) = ([a, b, c, d], [e, f, g, h], [red, green, blue]);
         let distance: Cubic<L> = each(
             #[inline(always)]
             |k| value[k] - anchor,
         );
-        let low = each(
-            #[inline(always)]
-            |c| L::pick(&self.low[c], i),
-        );
-        let slope = each(
-            #[inline(always)]
-            |c| L::pick(&self.slope[c], i),
-        );
-        let drift = each(
-            #[inline(always)]
-            |c| L::pick(&self.drift[c], i),
-        );
-        let largest_drift = L::pick(&self.largest_drift, i);
         finish.finish_linear(&Linear { distance, low, slope, drift, largest_drift }, length_mm)
     }
 }

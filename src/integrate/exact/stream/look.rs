@@ -111,8 +111,8 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
             whole.are_inner &= are_inner;
             cut.are_inner &= are_inner;
         }
-        whole.append(shows.and(stays), slots, &fields, &least, length_mm, way.as_ref());
-        cut.append(shows.and_not(stays), slots, &fields, &least, length_mm, way.as_ref());
+        whole.append(shows.and(stays), slots, &fields, Some(&least), length_mm, way.as_ref());
+        cut.append(shows.and_not(stays), slots, &fields, None, length_mm, way.as_ref());
     }
 }
 

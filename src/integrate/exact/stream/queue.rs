@@ -34,7 +34,7 @@ pub(super) struct Shown<const F: usize> {
     /// Which of the cells passed.
     pub(super) slot: [i32; ROOM],
     pub(super) fields: [[[f32; ROOM]; 4]; F],
-    /// The interval of each field; used where it does not change along the cell.
+    /// The interval of each field, where it does not change along the cell.
     pub(super) interval: [[i32; ROOM]; F],
     /// Length, mm.
     pub(super) length_mm: [f32; ROOM],
@@ -76,7 +76,7 @@ impl<const F: usize> Shown<F> {
         chosen: L::Mask,
         slot: L::Ints,
         fields: &[Cubic<L>; F],
-        interval: &[L::Ints; F],
+        interval: Option<&[L::Ints; F]>,
         length_mm: L,
         way: Option<&Way<L>>,
     ) {
@@ -90,7 +90,9 @@ impl<const F: usize> Shown<F> {
         slot.compress(chosen).store(&mut self.slot[at..]);
         length_mm.compress(chosen).store(&mut self.length_mm[at..]);
         for f in 0..F {
-            interval[f].compress(chosen).store(&mut self.interval[f][at..]);
+            if let Some(interval) = interval {
+                interval[f].compress(chosen).store(&mut self.interval[f][at..]);
+            }
             for k in 0..4 {
                 fields[f][k].compress(chosen).store(&mut self.fields[f][k][at..]);
             }

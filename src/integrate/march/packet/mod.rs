@@ -31,7 +31,7 @@ use crate::simd::{self, BATCH, Ints, Lanes, Level, Mask, Pairs};
 use crate::volume::Grid;
 use light::{Light, interval};
 use pieces::Pieces;
-use visible::{Halves, Scenery, Visible};
+use visible::{Halves, Sample, Scenery, Visible};
 use walk::Walk;
 
 /// Marches rays side by side.
@@ -185,6 +185,9 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> simd::Kernel for Flight
         );
         let Packets { field, units, shader, .. } = kernel;
         let scenery = Scenery { field, units, shader: *shader, halves };
+        if S::SHADES {
+            visible.begin(lights.len());
+        }
         let mut next = 0;
         loop {
             let mut any = false;
@@ -195,11 +198,14 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> simd::Kernel for Flight
                 kernel.sample(&mut groups, visible, L::splat(tile.stop_below));
             }
             if S::SHADES {
-                visible.shade::<L, V, S>(&scenery, lights, !any);
+                visible.shade::<L, V, S>(&scenery, !any);
             }
             if !any {
-                return;
+                break;
             }
+        }
+        if S::SHADES {
+            visible.put_down(lights);
         }
     }
 }
@@ -307,7 +313,8 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Packets<'_, V, C, S> {
             let share = [red * weight, green * weight, blue * weight];
             if S::SHADES {
                 let [red, green, blue] = share;
-                visible.add(lit, [red, green, blue, extinction * weight], places[g], walk.number());
+                let (share, (corner, fraction)) = ([red, green, blue, extinction * weight], places[g]);
+                visible.add(lit, &Sample { share, corner, fraction, piece: walk.number() });
             } else {
                 light.add(lit, share);
             }

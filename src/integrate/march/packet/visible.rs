@@ -7,20 +7,88 @@ use super::GROUPS;
 use crate::field::{GradientUnits, Trilinear, Voxel};
 use crate::integrate::shade::LaneShader;
 use crate::integrate::tiles::Radiance;
-use crate::simd::{BATCH, Ints, Lanes, Mask, Pairs};
+use crate::simd::{BATCH, Ints, Joining, Lanes, Mask, Pairs};
 
-/// Room for what waits, fewer than a register's lanes, for what a turn adds, and a register behind.
-const ROOM: usize = (GROUPS + 2) * BATCH;
+/// Registers full of samples, or nearly: a turn fills no more than one of each group, and one more waits.
+const REGISTERS: usize = (GROUPS + 1).next_power_of_two();
 
 /// Samples that wait.
 pub(super) struct Visible {
-    count: usize,
+    /// In turns; number `at` is being filled, and before it are those that are full.
+    registers: Box<[Samples; REGISTERS]>,
+    at: usize,
+    full: usize,
+    /// How many samples number `at` has.
+    waiting: usize,
+    /// What samples have added so far, by the number of the piece: linear RGB, and nothing.
+    colors: Vec<[f64; 4]>,
+}
+
+/// Samples in memory, as many as a register has lanes; rows begin where lines of the cache do.
+#[derive(Clone, Copy, Default)]
+#[repr(align(64))]
+struct Samples {
+    share: [[f32; BATCH]; 4],
+    corner: [[i32; BATCH]; 3],
+    fraction: [[f32; BATCH]; 3],
+    piece: [i32; BATCH],
+}
+
+/// Samples in registers.
+pub(super) struct Sample<L: Lanes> {
     /// What reaches the eye of emission in red, green and blue, and of extinction, if it were reflected whole.
-    share: [[f32; ROOM]; 4],
-    corner: [[i32; ROOM]; 3],
-    fraction: [[f32; ROOM]; 3],
+    pub(super) share: [L; 4],
+    /// The lower corner of the cell, and where in the cell: 0 to 1.
+    pub(super) corner: [L::Ints; 3],
+    pub(super) fraction: [L; 3],
     /// The piece of a ray, by its number.
-    piece: [i32; ROOM],
+    pub(super) piece: L::Ints,
+}
+
+impl<L: Lanes> Sample<L> {
+    #[inline(always)]
+    fn load(from: &Samples) -> Self {
+        let mut sample = Sample {
+            share: [L::ZERO; 4],
+            corner: [L::Ints::splat(0); 3],
+            fraction: [L::ZERO; 3],
+            piece: L::Ints::load(&from.piece),
+        };
+        for c in 0..4 {
+            sample.share[c] = L::load(&from.share[c]);
+        }
+        for a in 0..3 {
+            sample.corner[a] = L::Ints::load(&from.corner[a]);
+            sample.fraction[a] = L::load(&from.fraction[a]);
+        }
+        sample
+    }
+
+    /// Joins those that wait.
+    #[inline(always)]
+    fn join(&self, joining: &Joining<L>, waiting: &mut Samples) {
+        for c in 0..4 {
+            joining.join(self.share[c], &mut waiting.share[c]);
+        }
+        for a in 0..3 {
+            joining.join_ints(self.corner[a], &mut waiting.corner[a]);
+            joining.join(self.fraction[a], &mut waiting.fraction[a]);
+        }
+        joining.join_ints(self.piece, &mut waiting.piece);
+    }
+
+    /// Puts those for which there was no room to the front.
+    #[inline(always)]
+    fn put(&self, joining: &Joining<L>, front: &mut Samples) {
+        for c in 0..4 {
+            joining.put(self.share[c], &mut front.share[c]);
+        }
+        for a in 0..3 {
+            joining.put_ints(self.corner[a], &mut front.corner[a]);
+            joining.put(self.fraction[a], &mut front.fraction[a]);
+        }
+        joining.put_ints(self.piece, &mut front.piece);
+    }
 }
 
 /// The half vectors of lights, by the number of a piece.
@@ -61,33 +129,39 @@ pub(super) struct Scenery<'t, 'a, V, S> {
 impl Visible {
     pub(super) fn new() -> Self {
         Visible {
-            count: 0,
-            share: [[0.0; ROOM]; 4],
-            corner: [[0; ROOM]; 3],
-            fraction: [[0.0; ROOM]; 3],
-            piece: [0; ROOM],
+            registers: Box::new([Samples::default(); REGISTERS]),
+            at: 0,
+            full: 0,
+            waiting: 0,
+            colors: Vec::new(),
+        }
+    }
+
+    /// Begins so many pieces.
+    pub(super) fn begin(&mut self, pieces: usize) {
+        self.colors.clear();
+        self.colors.resize(pieces, [0.0; 4]);
+    }
+
+    /// What all samples have added to their pieces.
+    pub(super) fn put_down(&self, lights: &mut [Radiance]) {
+        for (light, &[red, green, blue, _]) in lights.iter_mut().zip(&self.colors) {
+            light.color = [red, green, blue];
         }
     }
 
     /// Adds a sample of each of these lanes.
     #[inline(always)]
-    pub(super) fn add<L: Lanes>(
-        &mut self,
-        lanes: L::Mask,
-        share: [L; 4],
-        (corner, fraction): ([L::Ints; 3], [L; 3]),
-        piece: L::Ints,
-    ) {
-        let at = self.count;
-        for c in 0..4 {
-            share[c].compress(lanes).store(&mut self.share[c][at..]);
+    pub(super) fn add<L: Lanes>(&mut self, lanes: L::Mask, sample: &Sample<L>) {
+        let joining = Joining::<L>::new(self.waiting, lanes);
+        sample.join(&joining, &mut self.registers[self.at % REGISTERS]);
+        self.waiting += joining.chosen();
+        if self.waiting >= L::LANES {
+            self.waiting -= L::LANES;
+            self.full += 1;
+            self.at += 1;
+            sample.put(&joining, &mut self.registers[self.at % REGISTERS]);
         }
-        for a in 0..3 {
-            corner[a].compress(lanes).store(&mut self.corner[a][at..]);
-            fraction[a].compress(lanes).store(&mut self.fraction[a][at..]);
-        }
-        piece.compress(lanes).store(&mut self.piece[at..]);
-        self.count += lanes.bits().count_ones() as usize;
     }
 
     /// Shades registers full of samples; of those that are left, all if asked to.
@@ -95,44 +169,28 @@ impl Visible {
     pub(super) fn shade<L: Lanes, V: Voxel + Pairs, S: LaneShader>(
         &mut self,
         scenery: &Scenery<'_, '_, V, S>,
-        lights: &mut [Radiance],
         all: bool,
     ) {
-        let least = if all { 1 } else { L::LANES };
-        let mut from = 0;
-        while self.count - from >= least {
-            let count = (self.count - from).min(L::LANES);
-            self.shade_some::<L, V, S>(scenery, lights, from, count);
-            from += count;
+        let first = self.at - self.full;
+        let last = self.at + usize::from(all && self.waiting > 0);
+        for at in first..last {
+            let count = if at < self.at { L::LANES } else { self.waiting };
+            self.shade_register::<L, V, S>(scenery, at % REGISTERS, count);
         }
-        if from == 0 {
-            return;
+        self.full = 0;
+        if all {
+            (self.at, self.waiting) = (0, 0);
         }
-        // What is left is less than a register.
-        self.count -= from;
-        for c in 0..4 {
-            L::load(&self.share[c][from..]).store(&mut self.share[c]);
-        }
-        for a in 0..3 {
-            L::Ints::load(&self.corner[a][from..]).store(&mut self.corner[a]);
-            L::load(&self.fraction[a][from..]).store(&mut self.fraction[a]);
-        }
-        L::Ints::load(&self.piece[from..]).store(&mut self.piece);
     }
 
     #[inline(always)]
-    fn shade_some<L: Lanes, V: Voxel + Pairs, S: LaneShader>(
-        &self,
+    fn shade_register<L: Lanes, V: Voxel + Pairs, S: LaneShader>(
+        &mut self,
         scenery: &Scenery<'_, '_, V, S>,
-        lights: &mut [Radiance],
-        from: usize,
+        register: usize,
         count: usize,
     ) {
-        let (mut corner, mut fraction) = ([L::Ints::splat(0); 3], [L::ZERO; 3]);
-        for a in 0..3 {
-            corner[a] = L::Ints::load(&self.corner[a][from..]);
-            fraction[a] = L::load(&self.fraction[a][from..]);
-        }
+        let Sample { share, corner, fraction, piece } = Sample::<L>::load(&self.registers[register]);
         let field = scenery.field;
         let cells = field.cells_at::<L>(corner, fraction);
         let gradients = if <L::Mask as Mask>::ALL.and_not(field.are_inside(&cells)).any() {
@@ -140,22 +198,21 @@ impl Visible {
         } else {
             field.gradients(&cells, &field.lines(&cells))
         };
-        let piece = L::Ints::load(&self.piece[from..]);
         let (reflected, highlight) = scenery.shader.reflect(
             scenery.units.per_mm(gradients),
             #[inline(always)]
             |light| scenery.halves.of::<L>(light, piece),
         );
-        let extinction = L::load(&self.share[3][from..]);
-        let mut added = [[0.0; BATCH]; 3];
+        let mut added = [L::ZERO; 4];
         for c in 0..3 {
-            let emission = L::load(&self.share[c][from..]);
-            emission.mul_plus(reflected[c], extinction * highlight[c]).store(&mut added[c]);
+            added[c] = share[c].mul_plus(reflected[c], share[3] * highlight[c]);
         }
-        for k in 0..count {
-            let color = &mut lights[self.piece[from + k] as usize].color;
-            for c in 0..3 {
-                color[c] += f64::from(added[c][k]);
+        let mut colors = [[0.0; 4]; BATCH];
+        L::store_vectors(added, &mut colors);
+        for (added, &piece) in colors[..count].iter().zip(&self.registers[register].piece) {
+            let color = &mut self.colors[piece as usize];
+            for c in 0..4 {
+                color[c] += f64::from(added[c]);
             }
         }
     }
