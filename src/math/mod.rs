@@ -10,7 +10,7 @@ pub mod powers;
 mod real;
 pub mod scattering;
 
-pub use absorb::{absorbed_f32, mean_transmittance_f32};
+pub use absorb::{THIN, absorbed_f32, mean_transmittance_f32, mean_transmittance_of_thin};
 pub use each::each;
 pub use number::Number;
 pub use opacity::extinction_per_mm;

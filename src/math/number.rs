@@ -43,4 +43,9 @@ pub trait Number:
     fn absorbed(self) -> Self;
     /// `(1 − e^{−τ}) / τ`, which is 1 at τ = 0: the mean transmittance over a piece of optical depth τ ≥ 0.
     fn mean_transmittance(self) -> Self;
+    /// Both.
+    #[inline(always)]
+    fn absorbed_and_mean_transmittance(self) -> (Self, Self) {
+        (self.absorbed(), self.mean_transmittance())
+    }
 }

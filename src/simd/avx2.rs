@@ -5,7 +5,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::lanes::{absorbed, last, last_pair, last_quad, last_word, mean_transmittance};
+use super::lanes::{attenuation, last, last_pair, last_quad, last_word};
 use super::register::{arithmetic, operators};
 use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
 use crate::math::Number;

@@ -4,6 +4,8 @@ use std::ops::{Add, Mul, Sub};
 
 use super::{BATCH, TWO_BATCHES, Table};
 use crate::math::Number;
+#[cfg(target_arch = "x86_64")]
+use crate::math::{THIN, mean_transmittance_of_thin};
 
 /// f32 numbers side by side, each computed for itself.
 pub(crate) trait Lanes: Number {
@@ -294,10 +296,24 @@ pub(super) fn last_quad<T>(samples: &[T]) -> u32 {
     (samples.len() - 4).min(i32::MAX as usize) as u32
 }
 
-/// `1 − e^{−τ}` as [`absorbed_f32`](crate::math::absorbed_f32) has it, operation by operation.
+/// `1 − e^{−τ}` and `(1 − e^{−τ})/τ` as [`absorbed_f32`](crate::math::absorbed_f32) and
+/// [`mean_transmittance_f32`](crate::math::mean_transmittance_f32) have them, operation by operation.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-pub(super) fn absorbed<L: Lanes>(optical_depth: L) -> L {
+pub(super) fn attenuation<L: Lanes>(optical_depth: L) -> (L, L) {
+    let mean = mean_transmittance_of_thin(optical_depth);
+    let absorbed = optical_depth * mean;
+    let thin = optical_depth.le(L::splat(THIN));
+    if !<L::Mask as Mask>::ALL.and_not(thin).any() {
+        return (absorbed, mean);
+    }
+    let of_dense = absorbed_by_dense(optical_depth);
+    (L::select(thin, absorbed, of_dense), L::select(thin, mean, of_dense / optical_depth))
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn absorbed_by_dense<L: Lanes>(optical_depth: L) -> L {
     let constant = L::from_f64;
     let x = -(constant(87.0).min(optical_depth));
     let k = (x * constant(f64::from(std::f32::consts::LOG2_E))).round();
@@ -311,13 +327,4 @@ pub(super) fn absorbed<L: Lanes>(optical_depth: L) -> L {
     let expm1 = (p * f).mul_plus(f, f);
     let scale = L::power_of_two(k.to_ints());
     (L::ONE - scale).minus_product(scale, expm1)
-}
-
-/// `(1 − e^{−τ}) / τ` as [`mean_transmittance_f32`](crate::math::mean_transmittance_f32) has it.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-pub(super) fn mean_transmittance<L: Lanes>(optical_depth: L) -> L {
-    let thin = optical_depth.lt(L::from_f64(f64::from(1e-4_f32)));
-    let of_thin = L::ONE.minus_product(L::from_f64(0.5), optical_depth);
-    L::select(thin, of_thin, absorbed(optical_depth) / optical_depth)
 }

@@ -82,11 +82,15 @@ macro_rules! arithmetic {
             }
             #[inline(always)]
             fn absorbed(self) -> Self {
-                absorbed(self)
+                attenuation(self).0
             }
             #[inline(always)]
             fn mean_transmittance(self) -> Self {
-                mean_transmittance(self)
+                attenuation(self).1
+            }
+            #[inline(always)]
+            fn absorbed_and_mean_transmittance(self) -> (Self, Self) {
+                attenuation(self)
             }
         }
     };

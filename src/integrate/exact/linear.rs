@@ -53,7 +53,7 @@ impl<R: Number> Linear<R> {
     pub(super) fn integrate(&self, length_mm: R) -> Integral<R> {
         let mean = self.mean_distance();
         let depth = length_mm * self.at(3, mean).max(R::ZERO);
-        let m = depth.mean_transmittance();
+        let (absorbed, m) = depth.absorbed_and_mean_transmittance();
         // D − d̄ t at the coefficients between its ends, where it is 0.
         let (mut low, mut high, mut at) = (R::ZERO, R::ZERO, R::ZERO);
         for k in 0..3 {
@@ -69,7 +69,7 @@ impl<R: Number> Linear<R> {
             |c| m * length_mm.mul_plus(self.at(c, mean), self.drift[c] * middle),
         );
         let error = m * (self.largest_drift * (scale * (high - low)));
-        Integral { absorbed: depth.absorbed(), radiance, error }
+        Integral { absorbed, radiance, error }
     }
 
     /// The same as polynomials.

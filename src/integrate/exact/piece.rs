@@ -62,7 +62,7 @@ impl<R: Number, const N: usize> Optics<R, N> {
         // A rounded or overshooting coefficient may take a vanishing extinction below 0.
         let sigma = (share * sum(&self.extinction)).max(R::ZERO);
         let depth = length_mm * sigma;
-        let m = depth.mean_transmittance();
+        let (absorbed, m) = depth.absorbed_and_mean_transmittance();
         let scale = length_mm * length_mm * share;
         let mut error = R::ZERO;
         let radiance = each(
@@ -83,7 +83,7 @@ impl<R: Number, const N: usize> Optics<R, N> {
             },
         );
         let [r, g, b]: [R; 3] = radiance;
-        Integral { absorbed: depth.absorbed(), radiance: [m * r, m * g, m * b], error: m * error }
+        Integral { absorbed, radiance: [m * r, m * g, m * b], error: m * error }
     }
 
     /// Emission with shading between `factors`' linear functions; `M` must be `N + 1`.

@@ -104,8 +104,8 @@ impl<L: Lanes> Light<L> {
 /// What intervals of these lengths absorb of the light from behind, and what their emission is multiplied by.
 #[inline(always)]
 pub(super) fn interval<L: Lanes>(extinction: L, delta_mm: L) -> (L, L) {
-    let depth = extinction * delta_mm;
-    (depth.absorbed(), delta_mm * depth.mean_transmittance())
+    let (absorbed, mean_transmittance) = (extinction * delta_mm).absorbed_and_mean_transmittance();
+    (absorbed, delta_mm * mean_transmittance)
 }
 
 #[cfg(test)]
