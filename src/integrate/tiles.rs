@@ -15,6 +15,12 @@ use crate::simd::{self, Lanes};
 /// Pixels per side of a tile: neighbouring rays read the same voxels.
 const TILE: usize = 16;
 
+/// Pixels per side of a tile where rays wait for seats that become free: at the end of a tile some stay empty.
+const LARGE_TILE: usize = 32;
+
+/// Fewer large tiles for each thread may leave threads idle at the end of a picture.
+const ENOUGH_TILES: usize = 64;
+
 /// Pixels of a tile.
 pub(super) const TILE_PIXELS: usize = TILE * TILE;
 
@@ -124,7 +130,10 @@ impl simd::Kernel for Aim<'_> {
 /// Renders all pixels, the rays of a tile at once.
 pub(super) fn render_whole(frame: &Frame<'_>, trace: TraceAll<'_>) -> (Image, Tally) {
     let (camera, background) = (&frame.scene.camera, frame.scene.background);
-    render_tiles(frame, Rays::default, |rays, tile, tally| {
+    let [width, height] = camera.size();
+    let of_each_thread = width * height / rayon::current_num_threads();
+    let side = if of_each_thread < ENOUGH_TILES * LARGE_TILE * LARGE_TILE { TILE } else { LARGE_TILE };
+    render_tiles(frame, side, Rays::default, |rays, tile, tally| {
         let pixels = tile.pixels();
         tile.rows.iter_mut().for_each(|pixels| pixels.fill(over(None, background)));
         frame.schedule.level.run(Aim { camera, pixels, rays });
@@ -143,7 +152,7 @@ pub(super) fn render_together<W: Send>(
     trace: impl Fn(&mut W, Pixels, &mut dyn FnMut(usize, Radiance)) + Sync,
 ) -> (Image, Tally) {
     let background = frame.scene.background;
-    render_tiles(frame, scratch, |scratch, tile, tally| {
+    render_tiles(frame, TILE, scratch, |scratch, tile, tally| {
         let pixels = tile.pixels();
         tile.rows.iter_mut().for_each(|pixels| pixels.fill(over(None, background)));
         trace(scratch, pixels, &mut |n, light| {
@@ -160,7 +169,7 @@ pub(super) fn render<W: Send>(
     scratch: impl Fn() -> W + Sync + Send,
     pixel: impl Fn(&mut W, usize, usize) -> Option<Radiance> + Sync,
 ) -> (Image, Tally) {
-    render_tiles(frame, scratch, |scratch, tile, tally| {
+    render_tiles(frame, TILE, scratch, |scratch, tile, tally| {
         for (y, row) in tile.rows.iter_mut().enumerate() {
             for (x, out) in row.iter_mut().enumerate() {
                 let light = pixel(scratch, tile.column + x, tile.row + y);
@@ -171,15 +180,16 @@ pub(super) fn render<W: Send>(
     })
 }
 
-/// Renders all tiles: `fill` renders one and counts what it took.
+/// Renders all tiles of `side` pixels: `fill` renders one and counts what it took.
 fn render_tiles<W: Send>(
     frame: &Frame<'_>,
+    side: usize,
     scratch: impl Fn() -> W + Sync + Send,
     fill: impl Fn(&mut W, &mut Tile<'_>, &mut Tally) + Sync,
 ) -> (Image, Tally) {
     let [width, height] = frame.scene.camera.size();
     let mut image = Image::transparent(width, height);
-    let mut tiles = cut(image.pixels_mut(), width);
+    let mut tiles = cut(image.pixels_mut(), width, side);
     if let Some(seed) = frame.schedule.shuffled_tiles {
         shuffle(&mut tiles, seed);
     }
@@ -202,13 +212,13 @@ fn render_tiles<W: Send>(
     (image, tally)
 }
 
-fn cut(pixels: &mut [[f32; 4]], width: usize) -> Vec<Tile<'_>> {
+fn cut(pixels: &mut [[f32; 4]], width: usize, side: usize) -> Vec<Tile<'_>> {
     let mut tiles: Vec<Tile<'_>> = Vec::new();
-    for (band, pixels) in pixels.chunks_mut(TILE * width).enumerate() {
+    for (band, pixels) in pixels.chunks_mut(side * width).enumerate() {
         let first = tiles.len();
-        tiles.extend((0..width).step_by(TILE).map(|column| Tile { column, row: band * TILE, rows: Vec::new() }));
+        tiles.extend((0..width).step_by(side).map(|column| Tile { column, row: band * side, rows: Vec::new() }));
         for line in pixels.chunks_mut(width) {
-            for (tile, part) in tiles[first..].iter_mut().zip(line.chunks_mut(TILE)) {
+            for (tile, part) in tiles[first..].iter_mut().zip(line.chunks_mut(side)) {
                 tile.rows.push(part);
             }
         }
@@ -243,7 +253,7 @@ mod tests {
     fn tiles_cover_every_pixel_once() {
         let (width, height) = (37, 21);
         let mut image = Image::transparent(width, height);
-        let mut tiles = cut(image.pixels_mut(), width);
+        let mut tiles = cut(image.pixels_mut(), width, 16);
         assert_eq!(tiles.len(), 6);
         shuffle(&mut tiles, 7);
         for tile in &mut tiles {

@@ -190,11 +190,13 @@ impl Lanes for F32x16 {
             let third = _mm512_shuffle_ps::<0b01_00_01_00>(xy_next, zw_next);
             let fourth = _mm512_shuffle_ps::<0b11_10_11_10>(xy_next, zw_next);
             // Quarters 0 and 1 of two, quarters 2 and 3 of two, then a quarter of all four.
-            let (low, high) = (_mm512_shuffle_f32x4::<0x44>(first, second), _mm512_shuffle_f32x4::<0x44>(third, fourth));
+            let (low, high) =
+                (_mm512_shuffle_f32x4::<0x44>(first, second), _mm512_shuffle_f32x4::<0x44>(third, fourth));
             let to = to.as_mut_ptr().cast::<f32>();
             _mm512_storeu_ps(to, _mm512_shuffle_f32x4::<0x88>(low, high));
             _mm512_storeu_ps(to.add(16), _mm512_shuffle_f32x4::<0xdd>(low, high));
-            let (low, high) = (_mm512_shuffle_f32x4::<0xee>(first, second), _mm512_shuffle_f32x4::<0xee>(third, fourth));
+            let (low, high) =
+                (_mm512_shuffle_f32x4::<0xee>(first, second), _mm512_shuffle_f32x4::<0xee>(third, fourth));
             _mm512_storeu_ps(to.add(32), _mm512_shuffle_f32x4::<0x88>(low, high));
             _mm512_storeu_ps(to.add(48), _mm512_shuffle_f32x4::<0xdd>(low, high));
         }

@@ -128,13 +128,7 @@ pub(super) struct Scenery<'t, 'a, V, S> {
 
 impl Visible {
     pub(super) fn new() -> Self {
-        Visible {
-            registers: Box::new([Samples::default(); REGISTERS]),
-            at: 0,
-            full: 0,
-            waiting: 0,
-            colors: Vec::new(),
-        }
+        Visible { registers: Box::new([Samples::default(); REGISTERS]), at: 0, full: 0, waiting: 0, colors: Vec::new() }
     }
 
     /// Begins so many pieces.
