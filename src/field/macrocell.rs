@@ -37,10 +37,8 @@ impl<const LOG2: u32> BlockRanges<LOG2> {
         let [across, down, _] = blocks;
         let mut ranges = vec![[0.0; 2]; blocks.iter().product()];
         let level = Level::widest();
-        ranges.par_chunks_mut(across * down).enumerate().for_each(|(k, slab)| {
-            for (j, row) in slab.chunks_mut(across).enumerate() {
-                level.run(Row::<V, K, LOG2> { field, at: [j, k], ranges: row });
-            }
+        ranges.par_chunks_mut(across * down).enumerate().for_each(|(k, ranges)| {
+            level.run(Slab::<V, K, LOG2> { field, k, ranges });
         });
         BlockRanges { blocks, ranges }
     }
@@ -62,44 +60,73 @@ fn voxels_of<const LOG2: u32>(block: usize, n: usize) -> std::ops::RangeInclusiv
     first..=(first + (1 << LOG2)).min(n - 1)
 }
 
-/// A row of blocks along x, to be filled with their ranges.
-struct Row<'f, 'v, 'r, V, K: Spacing, const LOG2: u32> {
+/// A slab of blocks, to be filled with their ranges.
+struct Slab<'f, 'v, 'r, V, K: Spacing, const LOG2: u32> {
     field: &'f Trilinear<'v, V, K>,
-    /// Its place among the rows.
-    at: [usize; 2],
+    /// Its place among the slabs.
+    k: usize,
     ranges: &'r mut [[f32; 2]],
 }
 
-/// Whole lines of voxels are reduced across the line first, and along it in steps that double; loops over neighbours, which the
+/// The planes of a slab are read one after the other, as they lie in memory, which takes half as long as row by row of blocks. Whole
+/// lines of voxels are reduced across the line first, and along it in steps that double; loops over neighbours, which the
 /// compiler fills registers with.
-impl<V: Voxel, K: Spacing, const LOG2: u32> Kernel for Row<'_, '_, '_, V, K, LOG2> {
+impl<V: Voxel, K: Spacing, const LOG2: u32> Kernel for Slab<'_, '_, '_, V, K, LOG2> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Row { field, at: [j, k], ranges } = self;
+        let Slab { field, k, ranges } = self;
         let [nx, ny, nz] = field.dims;
-        let first = field.voxels[nx * ((j << LOG2) + ny * (k << LOG2))..][..nx].to_vec();
-        let (mut low, mut high) = (first.clone(), first);
-        for z in voxels_of::<LOG2>(k, nz) {
-            for y in voxels_of::<LOG2>(j, ny) {
-                let line = &field.voxels[nx * (y + ny * z)..][..nx];
-                for ((&v, low), high) in line.iter().zip(&mut low).zip(&mut high) {
-                    *low = least(*low, v);
-                    *high = most(*high, v);
-                }
+        let [across, down, _] = BlockRanges::<LOG2>::blocks_of(field.dims);
+        let planes = voxels_of::<LOG2>(k, nz);
+        // Of each row of blocks, all voxels along x.
+        let rows = (0..down).map(|j| &field.voxels[nx * ((j << LOG2) + ny * planes.start())..][..nx]);
+        let mut low = rows.collect::<Vec<_>>().concat();
+        let mut high = low.clone();
+        for z in planes {
+            for (j, (low, high)) in low.chunks_exact_mut(nx).zip(high.chunks_exact_mut(nx)).enumerate() {
+                let lines = voxels_of::<LOG2>(j, ny);
+                let lines = &field.voxels[nx * (lines.start() + ny * z)..nx * (lines.end() + 1 + ny * z)];
+                extend(low, high, lines);
             }
         }
-        // Of each voxel and as many behind it as a block has cells, less one.
-        let (mut least_from, mut most_from) = (low.clone(), high.clone());
-        for log2 in 0..LOG2 {
-            join(&mut least_from, 1 << log2, least);
-            join(&mut most_from, 1 << log2, most);
+        for (j, row) in ranges.chunks_exact_mut(across).enumerate() {
+            let (low, high) = (&low[j * nx..][..nx], &high[j * nx..][..nx]);
+            // Of each voxel and as many behind it as a block has cells, less one.
+            let (mut least_from, mut most_from) = (low.to_vec(), high.to_vec());
+            for log2 in 0..LOG2 {
+                join(&mut least_from, 1 << log2, least);
+                join(&mut most_from, 1 << log2, most);
+            }
+            for (i, range) in row.iter_mut().enumerate() {
+                let voxels = voxels_of::<LOG2>(i, nx);
+                let (first, last) = (*voxels.start(), *voxels.end());
+                *range = [least(least_from[first], low[last]).to_f32(), most(most_from[first], high[last]).to_f32()];
+            }
         }
-        for (i, range) in ranges.iter_mut().enumerate() {
-            let voxels = voxels_of::<LOG2>(i, nx);
-            let (first, last) = (*voxels.start(), *voxels.end());
-            *range = [least(least_from[first], low[last]).to_f32(), most(most_from[first], high[last]).to_f32()];
+    }
+}
+
+/// Extends ranges of voxels along a line by those of other lines: four at a time, so that ranges are read and written a
+/// quarter as often.
+#[inline(always)]
+fn extend<V: Voxel>(low: &mut [V], high: &mut [V], lines: &[V]) {
+    let nx = low.len();
+    let mut fours = lines.chunks_exact(4 * nx);
+    for four in &mut fours {
+        let (ab, cd) = four.split_at(2 * nx);
+        let ((a, b), (c, d)) = (ab.split_at(nx), cd.split_at(nx));
+        let high = &mut high[..nx];
+        for x in 0..nx {
+            low[x] = least(low[x], least(least(a[x], b[x]), least(c[x], d[x])));
+            high[x] = most(high[x], most(most(a[x], b[x]), most(c[x], d[x])));
+        }
+    }
+    for line in fours.remainder().chunks_exact(nx) {
+        for ((&v, low), high) in line.iter().zip(&mut *low).zip(&mut *high) {
+            *low = least(*low, v);
+            *high = most(*high, v);
         }
     }
 }

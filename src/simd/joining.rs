@@ -35,12 +35,6 @@ impl<L: Lanes> Joining<L> {
         self.chosen
     }
 
-    /// For whom there is no room.
-    #[inline(always)]
-    pub(crate) fn left(&self) -> L::Mask {
-        self.left
-    }
-
     /// Puts the chosen ones of these numbers behind those that wait.
     #[inline(always)]
     pub(crate) fn join(&self, numbers: L, waiting: &mut [f32]) {
