@@ -12,6 +12,8 @@ pub struct OneD<R> {
     pieces: Vec<Linear<R>>,
     /// `lit_before[i]` is the number of intervals below `i` in which something absorbs or emits.
     lit_before: Vec<u32>,
+    /// Values below the first one, and those from the second one on, neither absorb nor emit.
+    lit: [R; 2],
 }
 
 /// A linear function of the stored value: `low + slope · (x − x_i)`, component by component.
@@ -47,7 +49,15 @@ impl<R: Real> OneD<R> {
             let lit = piece.low.iter().chain(&piece.slope).any(|&x| x != R::ZERO);
             lit_before.push(lit_before[lit_before.len() - 1] + u32::from(lit));
         }
-        OneD { axis, pieces, lit_before }
+        // Beyond the ends of the axis the function is that of its ends.
+        let far = R::from_f64(f64::INFINITY);
+        let is_lit = |i: &usize| lit_before[i + 1] > lit_before[*i];
+        let ends = (0..pieces.len()).find(is_lit).zip((0..pieces.len()).rfind(is_lit));
+        let lit = ends.map_or([far, -far], |(first, last)| {
+            let low = if first == 0 { -far } else { axis.knots()[first] };
+            [low, if last + 1 == pieces.len() { far } else { axis.knots()[last + 1] }]
+        });
+        OneD { axis, pieces, lit_before, lit }
     }
 
     /// The knots along the value axis, in stored units.
@@ -88,6 +98,10 @@ impl<R: Real> Classifier<R> for OneD<R> {
 
     #[inline(always)]
     fn is_empty(&self, stored: [R; 2], _gradient_per_mm: [R; 2]) -> bool {
+        // Most ranges that are asked about: no need to look for their intervals.
+        if stored[1] < self.lit[0] || self.lit[1] <= stored[0] {
+            return true;
+        }
         let [first, last] = stored.map(|x| self.axis.interval(self.axis.clamp(x)));
         self.are_empty(first, last)
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::march::ByPlace;
 use crate::field::{BLOCK_CELLS, BlockRanges, Macrocells, Pace, Position};
-use crate::simd::{Ints, Lanes};
+use crate::simd::{Ints, Kernel, Lanes, Level};
 
 /// How far around each block all blocks are like it.
 #[derive(Debug, Clone)]
@@ -71,14 +71,13 @@ impl EmptySpace {
     }
 
     fn from_active(blocks: [usize; 3], log2_cells: u32, active: &[bool]) -> Self {
-        let (to_active, to_empty) =
-            rayon::join(|| distances(blocks, active, true), || distances(blocks, active, false));
-        let beside = to_active.into_iter().zip(to_empty);
-        let alike = beside.map(|(to_active, to_empty)| match to_active {
-            0 => ACTIVE + to_empty.min(ACTIVE - 1),
-            distance => distance.min(ACTIVE - 1),
-        });
-        EmptySpace { blocks, log2_cells, alike: alike.chain([0; 3]).collect() }
+        let to = |to: bool| Level::widest().run(Distances { blocks, active, to });
+        let (mut alike, to_empty) = rayon::join(|| to(true), || to(false));
+        for (alike, to_empty) in alike.iter_mut().zip(to_empty) {
+            *alike = if *alike == 0 { ACTIVE + to_empty.min(ACTIVE - 1) } else { (*alike).min(ACTIVE - 1) };
+        }
+        alike.extend([0; 3]);
+        EmptySpace { blocks, log2_cells, alike }
     }
 
     /// How many samples at this pace, from `position` on, are in active blocks, or surely in empty ones.
@@ -116,16 +115,40 @@ impl EmptySpace {
     }
 }
 
-/// Chessboard distances from blocks to the nearest that is active, or that is not; 255 if there is none.
-fn distances(blocks: [usize; 3], active: &[bool], to: bool) -> Vec<u8> {
-    let mut distance: Vec<u8> = active.iter().map(|&a| if a == to { 0 } else { u8::MAX }).collect();
-    // In two passes over the neighbours already seen (Rosenfeld and Pfaltz 1966).
-    let mut rows = Rows::new(blocks, &mut distance);
-    let [_, ny, nz] = blocks.map(|n| n as isize);
-    let in_order = |row: isize| [row % ny, row / ny];
-    (0..ny * nz).map(in_order).for_each(|[j, k]| rows.lower(j, k, 1));
-    (0..ny * nz).rev().map(in_order).for_each(|[j, k]| rows.lower(j, k, -1));
-    distance
+/// Chessboard distances from blocks to the nearest that is active, or that is not; 255 if there is none. Compiled for the processor's
+/// registers, which parts of rows fill.
+struct Distances<'a> {
+    blocks: [usize; 3],
+    active: &'a [bool],
+    to: bool,
+}
+
+impl Kernel for Distances<'_> {
+    type Output = Vec<u8>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Vec<u8> {
+        let Distances { blocks, active, to } = self;
+        let mut rows = Rows::new(blocks, active, to);
+        let [nx, ny, nz] = blocks;
+        // In two passes over the neighbours already seen (Rosenfeld and Pfaltz 1966).
+        let [_, height, depth] = blocks.map(|n| n as isize);
+        for k in 0..depth {
+            for j in 0..height {
+                rows.lower(j, k, 1);
+            }
+        }
+        for k in (0..depth).rev() {
+            for j in (0..height).rev() {
+                rows.lower(j, k, -1);
+            }
+        }
+        let mut distance = Vec::with_capacity(nx * ny * nz + 3);
+        for row in rows.distance.chunks_exact(rows.stride) {
+            distance.extend_from_slice(&row[..nx]);
+        }
+        distance
+    }
 }
 
 /// A range that also holds what rounding makes of interpolated values.
@@ -134,64 +157,78 @@ pub(super) fn widened([low, high]: [f32; 2]) -> [f32; 2] {
     [low - margin, high + margin]
 }
 
-/// Distances, row by row of blocks along i.
-struct Rows<'d> {
+/// Blocks that are worked on at a time: a whole register of them.
+const PART: usize = 64;
+
+/// Blocks beyond a row's ends, as far from everything as can be: at least as many as the largest step along a row.
+const MARGIN: usize = 128;
+
+/// Distances, row by row of blocks along i; rows are padded to whole parts.
+struct Rows {
     blocks: [usize; 3],
-    distance: &'d mut [u8],
-    /// The least distances of the rows beside the one that is lowered.
-    beside: Vec<u8>,
+    stride: usize,
+    distance: Vec<u8>,
+    /// A row between margins.
+    line: Vec<u8>,
 }
 
-impl<'d> Rows<'d> {
-    fn new(blocks: [usize; 3], distance: &'d mut [u8]) -> Self {
-        Rows { blocks, distance, beside: vec![0; blocks[0]] }
-    }
-
-    fn row(&self, j: isize, k: isize) -> Option<std::ops::Range<usize>> {
-        let [nx, ny, nz] = self.blocks;
-        let (j, k) = (usize::try_from(j).ok().filter(|&j| j < ny)?, usize::try_from(k).ok().filter(|&k| k < nz)?);
-        let first = nx * (j + ny * k);
-        Some(first..first + nx)
-    }
-
-    /// Lowers the distances of a row to one more than those of the neighbours that come before in this direction, whole rows at a
-    /// time as far as that is possible.
-    fn lower(&mut self, j: isize, k: isize, direction: isize) {
-        let Some(row) = self.row(j, k) else { return };
-        self.beside.fill(u8::MAX);
-        for [dj, dk] in [[-1, 0], [-1, -1], [0, -1], [1, -1]] {
-            let Some(before) = self.row(j + dj * direction, k + dk * direction) else { continue };
-            for (least, &d) in self.beside.iter_mut().zip(&self.distance[before]) {
-                *least = (*least).min(d);
+impl Rows {
+    #[inline(always)]
+    fn new(blocks: [usize; 3], active: &[bool], to: bool) -> Self {
+        let [nx, ny, nz] = blocks;
+        let stride = nx.next_multiple_of(PART);
+        let mut distance = vec![u8::MAX; stride * ny * nz];
+        for (row, active) in distance.chunks_exact_mut(stride).zip(active.chunks_exact(nx)) {
+            for (distance, &active) in row.iter_mut().zip(active) {
+                *distance = if active == to { 0 } else { u8::MAX };
             }
         }
+        Rows { blocks, stride, distance, line: vec![u8::MAX; MARGIN + stride + MARGIN] }
+    }
+
+    #[inline(always)]
+    fn row(&self, j: isize, k: isize) -> Option<std::ops::Range<usize>> {
+        let [_, ny, nz] = self.blocks;
+        let (j, k) = (usize::try_from(j).ok().filter(|&j| j < ny)?, usize::try_from(k).ok().filter(|&k| k < nz)?);
+        let first = self.stride * (j + ny * k);
+        Some(first..first + self.stride)
+    }
+
+    /// Lowers the distances of a row to one more than those of the neighbours that come before in this direction, and then along the
+    /// row from ever further away.
+    #[inline(always)]
+    fn lower(&mut self, j: isize, k: isize, direction: isize) {
+        let Some(row) = self.row(j, k) else { return };
+        let within = MARGIN..MARGIN + self.stride;
+        self.line[within.clone()].fill(u8::MAX);
+        for [dj, dk] in [[-1, 0], [-1, -1], [0, -1], [1, -1]] {
+            let Some(before) = self.row(j + dj * direction, k + dk * direction) else { continue };
+            lower(&mut self.line[within.clone()], &self.distance[before], 0);
+        }
         let row = &mut self.distance[row];
-        let across = [&self.beside[1..], &self.beside[..self.beside.len() - 1]];
-        lower(row, &self.beside);
-        lower(row, across[0]);
-        lower(&mut row[1..], across[1]);
-        // Along the row, from ever further away: distances of 255 and more are all the same.
+        for from in [MARGIN - 1, MARGIN, MARGIN + 1] {
+            lower(row, &self.line[from..], 1);
+        }
+        // Distances of more than the margin are as good as any.
         let mut away = 1;
-        while away < row.len().min(256) {
-            self.beside.copy_from_slice(row);
-            let (near, far) = (row.len() - away, away as u8);
-            let (lowered, from) = if direction > 0 {
-                (&mut row[away..], &self.beside[..near])
-            } else {
-                (&mut row[..near], &self.beside[away..])
-            };
-            for (d, &n) in lowered.iter_mut().zip(from) {
-                *d = (*d).min(n.saturating_add(far));
-            }
+        while away <= MARGIN && away < self.blocks[0] {
+            self.line[within.clone()].copy_from_slice(row);
+            let from = MARGIN.wrapping_add_signed(-direction * away as isize);
+            lower(row, &self.line[from..], away as u8);
             away *= 2;
         }
     }
 }
 
-/// Lowers distances to one more than those of neighbours.
-fn lower(distance: &mut [u8], neighbours: &[u8]) {
-    for (d, &n) in distance.iter_mut().zip(neighbours) {
-        *d = (*d).min(n.saturating_add(1));
+/// Lowers distances to those of as many others and so much more.
+#[inline(always)]
+fn lower(distance: &mut [u8], others: &[u8], more: u8) {
+    let (parts, _) = distance.as_chunks_mut::<PART>();
+    let (others, _) = others.as_chunks::<PART>();
+    for (part, others) in parts.iter_mut().zip(others) {
+        for (d, &n) in part.iter_mut().zip(others) {
+            *d = (*d).min(n.saturating_add(more));
+        }
     }
 }
 
