@@ -43,6 +43,14 @@ impl<const LOG2: u32> BlockRanges<LOG2> {
         BlockRanges { blocks, ranges }
     }
 
+    /// The ranges of what a rising function makes of the values.
+    pub(super) fn mapped(mut self, rising: impl Fn(f32) -> f32) -> Self {
+        for range in &mut self.ranges {
+            *range = range.map(&rising);
+        }
+        self
+    }
+
     /// Number of blocks along i, j and k.
     pub fn blocks(&self) -> [usize; 3] {
         self.blocks
@@ -68,7 +76,7 @@ struct Slab<'f, 'v, 'r, V, K: Spacing, const LOG2: u32> {
     ranges: &'r mut [[f32; 2]],
 }
 
-/// The planes of a slab are read one after the other, as they lie in memory, which takes half as long as row by row of blocks. Whole
+/// The planes of a slab are read one after the other, as they lie in memory: row by row of blocks memory was slower. Whole
 /// lines of voxels are reduced across the line first, and along it in steps that double; loops over neighbours, which the
 /// compiler fills registers with.
 impl<V: Voxel, K: Spacing, const LOG2: u32> Kernel for Slab<'_, '_, '_, V, K, LOG2> {

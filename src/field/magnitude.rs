@@ -2,12 +2,102 @@
 
 use rayon::prelude::*;
 
-use super::{Even, GradientUnits, Spacing, Trilinear, Voxel};
+use super::{BlockRanges, Cell, Cells, Even, GradientUnits, Spacing, Trilinear, Voxel};
 use crate::error::Result;
+use crate::math::Number;
+use crate::simd::Lanes;
 use crate::volume::{Samples, Volume};
 
-/// The gradient magnitude at every voxel, HU/mm, x fastest: 4 bytes per voxel, computed in parallel. Only 2D transfer
-/// functions read it.
+/// The gradient magnitude at every voxel in 16 bits, as a channel that is interpolated like the values. Only 2D transfer functions
+/// read it.
+#[derive(Debug, Clone)]
+pub struct Magnitudes {
+    /// Steps, less 32768.
+    stored: Vec<i16>,
+    /// HU/mm.
+    step: f32,
+}
+
+/// Steps from 0 to the largest magnitude.
+const STEPS: f32 = u16::MAX as f32;
+
+/// Added to the steps that are stored.
+const ZERO: f32 = 32_768.0;
+
+impl Magnitudes {
+    /// Those of a field, computed in parallel: once for the largest, and once to store them.
+    pub fn new<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>, units: &GradientUnits) -> Self {
+        let [nx, ny, nz] = field.dims;
+        let largest = (0..ny * nz).into_par_iter().map_init(
+            || vec![0.0; nx],
+            |row, n| {
+                fill_row(field, units, n % ny, n / ny, row);
+                row.iter().fold(0.0, |largest: f32, &m| largest.max(m))
+            },
+        );
+        let largest = largest.reduce(|| 0.0, f32::max);
+        let step = (largest.min(f32::MAX) / STEPS).max(f32::MIN_POSITIVE);
+        let mut stored = vec![0; field.voxels.len()];
+        stored.par_chunks_mut(nx).enumerate().for_each_init(
+            || vec![0.0; nx],
+            |row, (n, stored)| {
+                fill_row(field, units, n % ny, n / ny, row);
+                for (stored, m) in stored.iter_mut().zip(row) {
+                    *stored = ((*m / step).round_ties_even() - ZERO) as i16;
+                }
+            },
+        );
+        Magnitudes { stored, step }
+    }
+
+    /// The channel over a lattice of these voxels.
+    ///
+    /// # Errors
+    /// As [`Trilinear::new`].
+    pub fn field(&self, dims: [usize; 3]) -> Result<Magnitude<'_>> {
+        Ok(Magnitude { stored: Trilinear::new(&self.stored, dims)?, step: self.step })
+    }
+
+    /// How far what is stored may be from the magnitude at a voxel, HU/mm; what is interpolated is no further off.
+    pub fn error_per_mm(&self) -> f32 {
+        // Half a step, and the roundings of the division and of reading it again.
+        self.step * (0.5 + 2.0 * STEPS * f32::EPSILON)
+    }
+}
+
+/// The gradient magnitude, HU/mm, interpolated between voxels.
+#[derive(Debug, Clone, Copy)]
+pub struct Magnitude<'a> {
+    stored: Trilinear<'a, i16>,
+    step: f32,
+}
+
+impl Magnitude<'_> {
+    /// At a place in a cell.
+    #[inline(always)]
+    pub fn value(&self, cell: &Cell) -> f32 {
+        self.per_mm(self.stored.value(cell))
+    }
+
+    /// In lanes.
+    #[inline(always)]
+    pub(crate) fn values<L: Lanes>(&self, cells: &Cells<L>) -> L {
+        self.per_mm(self.stored.values(cells))
+    }
+
+    #[inline(always)]
+    fn per_mm<R: Number>(&self, stored: R) -> R {
+        let step = R::from_f64(f64::from(self.step));
+        stored.mul_plus(step, R::from_f64(f64::from(self.step * ZERO)))
+    }
+
+    /// The ranges of blocks, HU/mm.
+    pub fn ranges<const LOG2: u32>(&self) -> BlockRanges<LOG2> {
+        BlockRanges::new(&self.stored).mapped(|stored| self.per_mm(stored))
+    }
+}
+
+/// The gradient magnitude at every voxel, HU/mm, x fastest: 4 bytes per voxel, computed in parallel.
 pub fn gradient_magnitude_per_mm<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>, units: &GradientUnits) -> Vec<f32> {
     let [nx, ny, _] = field.dims;
     let mut magnitude = vec![0.0; field.voxels.len()];
@@ -105,12 +195,16 @@ mod tests {
             let grid = Grid::axis_aligned(dims, DVec3::new(0.5, 0.7, 3.0)).unwrap();
             let units = GradientUnits::new(&grid, Rescale { slope: 2.0, intercept: -1000.0 });
             let magnitude = gradient_magnitude_per_mm(&field, &units);
+            let stored = Magnitudes::new(&field, &units);
+            let interpolated = stored.field(dims).unwrap();
             for (index, found) in magnitude.iter().enumerate() {
                 let at = grid.unflatten(index);
                 let cell: Cell = Position::new(DVec3::from_array(at.map(|i| i as f64)), dims).even_cell();
                 let [x, y, z] = units.per_mm(field.gradient_per_index(&cell));
                 let expected = (x * x + y * y + z * z).sqrt();
                 assert!((found - expected).abs() < 0.01, "{dims:?} at {at:?}: found {found}, expected {expected}");
+                let (kept, most) = (interpolated.value(&cell), stored.error_per_mm());
+                assert!((kept - found).abs() <= most, "{dims:?} at {at:?}: {kept} kept of {found}, {most:e} at most");
             }
         }
     }

@@ -34,7 +34,10 @@ pub use chords::Chords;
 pub use corners::Corners;
 pub use gradient::GradientUnits;
 pub use macrocell::{BLOCK_CELLS, BlockRanges, Macrocells};
-pub use magnitude::{gradient_magnitude_per_mm, gradient_magnitude_row, gradient_magnitudes, gradient_range_per_mm};
+pub use magnitude::{
+    Magnitude, Magnitudes, gradient_magnitude_per_mm, gradient_magnitude_row, gradient_magnitudes,
+    gradient_range_per_mm,
+};
 pub use position::{Cell, Pace, Position, Step};
 pub use spacing::{Even, SliceTable, Spacing, Uneven};
 pub use trilinear::{Trilinear, interpolate};

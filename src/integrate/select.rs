@@ -16,8 +16,8 @@ use crate::classify::{
 };
 use crate::error::Result;
 use crate::field::{
-    BlockRanges, GradientUnits, MOST_VOXELS_PER_STEP, Macrocells, SliceTable, Spacing, Trilinear, Voxel,
-    gradient_magnitude_per_mm, gradient_range_per_mm,
+    BlockRanges, GradientUnits, MOST_VOXELS_PER_STEP, Macrocells, Magnitude, Magnitudes, SliceTable, Spacing,
+    Trilinear, Voxel, gradient_range_per_mm,
 };
 use crate::image::Image;
 use crate::plan::{Lattice, March, Reflection, Table};
@@ -254,17 +254,17 @@ fn surveyed<'a, const LOG2: u32, V: Voxel, K: Spacing, C: ByPlace>(
     frame: &Frame<'a>,
     field: &Trilinear<'_, V, K>,
     classifier: &C,
-) -> Result<(Option<Trilinear<'a, f32>>, Option<&'a EmptySpace>)> {
+) -> Result<(Option<Magnitude<'a>>, Option<&'a EmptySpace>)> {
     let (survey, volume) = (frame.survey, frame.volume);
     let magnitudes = C::READS_GRADIENT.then(|| {
         let units = || GradientUnits::new(volume.grid(), volume.rescale());
-        survey.magnitudes.get_or_init(|| gradient_magnitude_per_mm(field, &units()))
+        survey.magnitudes.get_or_init(|| Magnitudes::new(field, &units()))
     });
-    let magnitude = magnitudes.map(|m| Trilinear::new(m, field.dims())).transpose()?;
+    let magnitude = magnitudes.map(|m| m.field(field.dims())).transpose()?;
     // Blocks are counted in even steps.
     let empty_space = (frame.schedule.empty_space_skipping && K::EVEN).then(|| {
         survey.empty_space.get_or_init(|| {
-            let magnitudes = magnitude.as_ref().map(BlockRanges::<LOG2>::new);
+            let magnitudes = magnitude.as_ref().map(Magnitude::ranges::<LOG2>);
             EmptySpace::new(&BlockRanges::<LOG2>::new(field), magnitudes.as_ref(), classifier)
         })
     });

@@ -5,13 +5,14 @@ use std::sync::OnceLock;
 use super::empty_space::EmptySpace;
 use super::light_volumes::Transmittances;
 use super::march::Blocks;
+use crate::field::Magnitudes;
 
 /// Found out by the first view that needs it, and read by all that follow: the views of one volume under one transfer function, by
 /// one method. What a kernel does not read is never found out.
 #[derive(Default)]
 pub(super) struct Survey {
-    /// The gradient magnitude at the voxels, HU/mm.
-    pub(super) magnitudes: OnceLock<Vec<f32>>,
+    /// The gradient magnitude at the voxels.
+    pub(super) magnitudes: OnceLock<Magnitudes>,
     /// Where nothing shows.
     pub(super) empty_space: OnceLock<EmptySpace>,
     /// The values of blocks.

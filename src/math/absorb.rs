@@ -10,8 +10,8 @@ use super::Number;
 /// Optical depths for which [`mean_transmittance_of_thin`] holds.
 pub const THIN: f32 = 2.0;
 
-/// `(1 − e^{−τ})/τ` for `τ = 1 + t`, by powers of `t`: least largest relative error over `[0, 2]`, 1.4e-8, by Lawson's iteration. The last
-/// one is moved by 1e-8 so that all of them, as f32, give 1 at 0.
+/// `(1 − e^{−τ})/τ` for `τ = 1 + t`, by powers of `t`: least largest relative error over `[0, 2]`, by Lawson's iteration. The last
+/// one is moved a little, so that all of them, as f32, give 1 at 0.
 const OF_THIN: [f64; 8] = [
     0.632_120_549_678_802_5,
     -0.264_241_129_159_927_37,

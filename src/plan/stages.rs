@@ -55,7 +55,7 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         }
     };
     if plan.demand.gradient_magnitude && matches!(plan.method, Method::March(_)) {
-        field("gradient magnitude at the voxels, by central differences, f32", 4 * voxels);
+        field("gradient magnitude at the voxels, by central differences, 16 bits of the largest", 2 * voxels);
     } else if plan.demand.gradient_magnitude {
         field("gradient magnitude at corners of lit cells, by central differences, not stored", 0);
     }

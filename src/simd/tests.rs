@@ -1,6 +1,7 @@
 //! One body over all levels: every lane does what one number does, to the bit.
 
-use super::{BATCH, Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, TWO_BATCHES, Table};
+use super::{BATCH, Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, TWO_BATCHES, Table, Tables};
+use crate::math::each;
 
 /// Numbers of all magnitudes, signs and roundings, the same on each call.
 fn numbers(count: usize, seed: u32) -> Vec<f32> {
@@ -197,6 +198,66 @@ fn compression_keeps_what_is_chosen_in_order() {
         let kept: Vec<f32> = from.iter().map(|&i| all[i as usize]).collect();
         for level in Level::ALL {
             assert_eq!(level.run(Below(bound)), (kept.clone(), from.clone()), "{level}, below {bound}");
+        }
+    }
+}
+
+/// Vectors of four rows of numbers, as every level stores them.
+struct Stored;
+
+impl Kernel for Stored {
+    type Output = Vec<[f32; 4]>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let rows: [Vec<f32>; 4] = std::array::from_fn(|c| numbers(512, c as u32));
+        let mut all = Vec::new();
+        for at in (0..512).step_by(L::LANES) {
+            let mut vectors = [[0.0; 4]; BATCH];
+            L::store_vectors(each(|c| L::load(&rows[c][at..])), &mut vectors);
+            all.extend_from_slice(&vectors[..L::LANES]);
+        }
+        all
+    }
+}
+
+#[test]
+fn vectors_are_stored_lane_by_lane() {
+    let rows: [Vec<f32>; 4] = std::array::from_fn(|c| numbers(512, c as u32));
+    let bits = |all: Vec<[f32; 4]>| all.concat().into_iter().map(f32::to_bits).collect::<Vec<u32>>();
+    let expected = bits((0..512).map(|k| each(|c| rows[c][k])).collect());
+    for level in Level::ALL {
+        assert_eq!(bits(level.run(Stored)), expected, "{level}");
+    }
+}
+
+/// Entries of tables, looked up together, number by number.
+struct Picked<'t>(&'t [[f32; 3]]);
+
+impl Kernel for Picked<'_> {
+    type Output = Vec<[f32; 3]>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let tables = Tables::new(self.0);
+        let mut all = Vec::new();
+        for at in (0..64).step_by(L::LANES) {
+            let found = tables.pick::<L>(L::Ints::count() + L::Ints::splat(at as i32));
+            let mut rows = [[0.0; BATCH]; 3];
+            found.into_iter().zip(&mut rows).for_each(|(x, row)| x.store(row));
+            all.extend((0..L::LANES).map(|k| rows.map(|row| row[k])));
+        }
+        all
+    }
+}
+
+#[test]
+fn tables_are_looked_up_together_as_one_by_one() {
+    for entries in [1, 3, 16, 17, 32, 50] {
+        let tables: Vec<[f32; 3]> = (0..entries).map(|k| [0.5, 100.0, -7.0].map(|x| x * k as f32 + x)).collect();
+        let expected: Vec<[f32; 3]> = (0..64).map(|k| tables[Ord::min(k, entries - 1)]).collect();
+        for level in Level::ALL {
+            assert_eq!(level.run(Picked(&tables)), expected, "{level}, {entries} entries");
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::composite::{EMPTY, Run};
 use super::medium::Medium;
 use crate::classify::LaneClassifier;
-use crate::field::{Batch, Cells, GradientUnits, Trilinear, Voxel, values_of};
+use crate::field::{Batch, Cells, GradientUnits, Magnitude, Trilinear, Voxel, values_of};
 use crate::integrate::shade::{Course, LaneShader};
 use crate::simd::{Lanes, Pairs};
 
@@ -11,7 +11,7 @@ use crate::simd::{Lanes, Pairs};
 pub(in super::super) struct ByLanes<'a, V, C, S> {
     pub(in super::super) field: Trilinear<'a, V>,
     /// The gradient magnitude, HU/mm; there if the transfer function reads it.
-    pub(in super::super) magnitude: Option<Trilinear<'a, f32>>,
+    pub(in super::super) magnitude: Option<Magnitude<'a>>,
     pub(in super::super) units: GradientUnits,
     pub(in super::super) classifier: &'a C,
     pub(in super::super) shader: &'a S,

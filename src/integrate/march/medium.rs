@@ -3,7 +3,7 @@
 use super::by_place::ByPlace;
 use super::composite::{EMPTY, Run};
 use crate::classify::Rgbs;
-use crate::field::{Batch, GradientUnits, Position, Spacing, Trilinear, Voxel};
+use crate::field::{Batch, GradientUnits, Magnitude, Position, Spacing, Trilinear, Voxel};
 use crate::integrate::shade::{Course, Shader, Spot};
 use crate::scene::Haze;
 use crate::simd::Lanes;
@@ -99,7 +99,7 @@ impl<M: Pointwise> Medium for OneByOne<'_, M> {
 pub(in super::super) struct Classified<'a, V, K, C, S> {
     pub(in super::super) field: Trilinear<'a, V, K>,
     /// The gradient magnitude, HU/mm; there if the transfer function reads it.
-    pub(in super::super) magnitude: Option<Trilinear<'a, f32>>,
+    pub(in super::super) magnitude: Option<Magnitude<'a>>,
     pub(in super::super) units: GradientUnits,
     pub(in super::super) classifier: &'a C,
     pub(in super::super) shader: &'a S,

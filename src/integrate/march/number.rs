@@ -8,7 +8,7 @@ use super::sampling::Sampling;
 use crate::classify::{Baked, Classifier, bake};
 use crate::error::Result;
 use crate::field::Chord;
-use crate::field::{GradientUnits, Macrocells, Pace, Position, Trilinear, Voxel, gradient_magnitude_per_mm};
+use crate::field::{GradientUnits, Macrocells, Magnitude, Magnitudes, Pace, Position, Trilinear, Voxel};
 use crate::integrate::empty_space::{EmptySpace, Leap};
 use crate::integrate::tiles::{self, Radiance};
 use crate::integrate::{Frame, Rendered, Statistics};
@@ -68,12 +68,12 @@ fn optical_depth<V: Voxel, C: Classifier<f32>>(
 ) -> Result<Rendered> {
     let (frame, grid) = (of.frame, of.frame.volume.grid());
     let units = GradientUnits::new(grid, frame.volume.rescale());
-    let found = || gradient_magnitude_per_mm(&field, &units);
+    let found = || Magnitudes::new(&field, &units);
     let magnitudes = C::READS_GRADIENT.then(|| frame.survey.magnitudes.get_or_init(found));
-    let magnitude = magnitudes.map(|m| Trilinear::new(m, grid.dims())).transpose()?;
+    let magnitude = magnitudes.map(|m| m.field(grid.dims())).transpose()?;
     let empty_space = frame.schedule.empty_space_skipping.then(|| {
         frame.survey.empty_space.get_or_init(|| {
-            let magnitudes = magnitude.as_ref().map(Macrocells::new);
+            let magnitudes = magnitude.as_ref().map(Magnitude::ranges);
             EmptySpace::new(&Macrocells::new(&field), magnitudes.as_ref(), classifier)
         })
     });

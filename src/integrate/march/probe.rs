@@ -1,7 +1,7 @@
 //! What a number along a ray is a number of: the stored value, or the extinction. Chosen by type, once per frame.
 
 use crate::classify::Classifier;
-use crate::field::{Cell, Trilinear, Voxel};
+use crate::field::{Cell, Magnitude, Trilinear, Voxel};
 
 /// Reads one number at a place.
 pub(super) trait Probe: Sync {
@@ -29,7 +29,7 @@ impl<V: Voxel> Probe for Stored<'_, V> {
 pub(super) struct Extinction<'a, V, C> {
     pub(super) field: Trilinear<'a, V>,
     /// The gradient magnitude, HU/mm; there if the transfer function reads it.
-    pub(super) magnitude: Option<Trilinear<'a, f32>>,
+    pub(super) magnitude: Option<Magnitude<'a>>,
     pub(super) classifier: &'a C,
 }
 

@@ -19,7 +19,7 @@ mod walk;
 
 use super::sampling::Sampling;
 use crate::classify::LaneClassifier;
-use crate::field::{Chords, GradientUnits, Trilinear, Voxel};
+use crate::field::{Chords, GradientUnits, Magnitude, Trilinear, Voxel};
 use crate::image::Image;
 use crate::integrate::Frame;
 use crate::integrate::empty_space::EmptySpace;
@@ -38,7 +38,7 @@ use walk::Walk;
 pub(in super::super) struct Packets<'a, V, C, S> {
     pub(in super::super) field: Trilinear<'a, V>,
     /// The gradient magnitude, HU/mm; there if the transfer function reads it.
-    pub(in super::super) magnitude: Option<Trilinear<'a, f32>>,
+    pub(in super::super) magnitude: Option<Magnitude<'a>>,
     pub(in super::super) units: GradientUnits,
     pub(in super::super) classifier: &'a C,
     pub(in super::super) shader: &'a S,
