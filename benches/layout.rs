@@ -10,10 +10,10 @@
 use std::time::Instant;
 
 /// Rays per side of the picture, and of a tile.
-const RAYS: usize = 160;
+const RAYS: usize = 96;
 const TILE: usize = 16;
 const NEIGHBOURS: usize = 4;
-const TURNS: usize = 5;
+const TURNS: usize = 3;
 const STEP: f32 = 0.5;
 
 /// Edge of a brick, voxels, as a power of two; 0 for lines.
