@@ -77,7 +77,7 @@ mod tests {
             let (mut waiting, mut all) = (0, Vec::new());
             for &of in self.0 {
                 for at in (0..1000).step_by(L::LANES) {
-                    let number = L::Ints::count() + L::Ints::splat(at as i32);
+                    let number = L::Ints::count() + L::Ints::splat(at);
                     let mut chosen = [0; BATCH];
                     number.store(&mut chosen);
                     let is_multiple = chosen.map(|n| i32::from(n < 1000 && n % of == 0));

@@ -242,7 +242,7 @@ impl Kernel for Picked<'_> {
         let tables = Tables::new(self.0);
         let mut all = Vec::new();
         for at in (0..64).step_by(L::LANES) {
-            let found = tables.pick::<L>(L::Ints::count() + L::Ints::splat(at as i32));
+            let found = tables.pick::<L>(L::Ints::count() + L::Ints::splat(at));
             let mut rows = [[0.0; BATCH]; 3];
             found.into_iter().zip(&mut rows).for_each(|(x, row)| x.store(row));
             all.extend((0..L::LANES).map(|k| rows.map(|row| row[k])));
