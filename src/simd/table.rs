@@ -3,7 +3,7 @@
 use super::{BATCH, Lanes};
 use crate::math::each;
 
-/// A table of numbers for [`Lanes::pick`](super::Lanes::pick), padded so that whole registers of it can be read.
+/// A table of numbers for [`Lanes::pick`], padded so that whole registers of it can be read.
 #[derive(Debug, Clone)]
 pub(crate) struct Table {
     entries: Vec<f32>,
