@@ -104,9 +104,9 @@ def errors(pellucid, pipeline, folder, samples, step_mm, result):
 
 
 def two_dimensional_memory(pellucid, view, volume, folder):
-    """Peak memory with a transfer function of value and gradient magnitude, lit. The picture is small: memory is of the volume."""
+    """Peak memory with a transfer function of value and gradient magnitude, lit, by method. Small pictures: memory is of the volume."""
     pipeline = scenes.pipeline(view, volume, folder, lit=True, two_d=True)
-    return pellucid.render(pipeline, EXACT, size=128)["peak_memory_bytes"]
+    return {name: pellucid.render(pipeline, integrate, size=128)["peak_memory_bytes"] for name, integrate in METHODS}
 
 
 def threads(pellucid, pipeline, rounds):

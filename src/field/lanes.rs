@@ -11,9 +11,9 @@ pub(crate) struct Cells<L: Lanes> {
     /// Place in memory of the lower corner.
     base: L::Ints,
     /// Lower corner, counted from voxel 0 of each axis.
-    corner: [L::Ints; 3],
+    pub(super) corner: [L::Ints; 3],
     /// Where in the cell.
-    fraction: [L; 3],
+    pub(super) fraction: [L; 3],
 }
 
 /// The samples `[i − 1, i, i + 1, i + 2]` of the four lines along i that hold a cell's corners `i` and `i + 1`, in the order
@@ -211,7 +211,7 @@ pub(crate) fn values_of<L: Lanes>(cells: &Cells<L>, lines: &Lines<L>) -> L {
 
 /// [`interpolate`](super::interpolate) between pairs along i.
 #[inline(always)]
-fn trilinear<L: Number>([a, b, c, d]: [[L; 2]; 4], [u, v, w]: [L; 3]) -> L {
+pub(super) fn trilinear<L: Number>([a, b, c, d]: [[L; 2]; 4], [u, v, w]: [L; 3]) -> L {
     let (lower, upper) =
         (lerp(lerp(a[0], a[1], u), lerp(b[0], b[1], u), v), lerp(lerp(c[0], c[1], u), lerp(d[0], d[1], u), v));
     lerp(lower, upper, w)

@@ -33,18 +33,25 @@ impl<const LOG2: u32> BlockRanges<LOG2> {
 
     /// The ranges of a channel, computed in parallel.
     pub fn new<V: Voxel, K: Spacing>(field: &Trilinear<'_, V, K>) -> Self {
-        let blocks = Self::blocks_of(field.dims);
+        let voxels = field.dims[0] * field.dims[1];
+        Self::of_planes(field.dims, || Stored { planes: field.voxels, voxels })
+    }
+
+    /// The ranges of a channel by its planes, which each thread asks for one after the other.
+    pub(super) fn of_planes<P: Planes>(dims: [usize; 3], planes: impl Fn() -> P + Sync + Send) -> Self {
+        let blocks = Self::blocks_of(dims);
         let [across, down, _] = blocks;
         let mut ranges = vec![[0.0; 2]; blocks.iter().product()];
         let level = Level::widest();
-        ranges.par_chunks_mut(across * down).enumerate().for_each(|(k, ranges)| {
-            level.run(Slab::<V, K, LOG2> { field, k, ranges });
+        ranges.par_chunks_mut(across * down).enumerate().for_each_init(planes, |planes, (k, ranges)| {
+            level.run(Slab::<P, LOG2> { dims, planes, k, ranges });
         });
         BlockRanges { blocks, ranges }
     }
 
     /// The ranges of what a rising function makes of the values.
-    pub(super) fn mapped(mut self, rising: impl Fn(f32) -> f32) -> Self {
+    #[must_use]
+    pub fn mapped(mut self, rising: impl Fn(f32) -> f32) -> Self {
         for range in &mut self.ranges {
             *range = range.map(&rising);
         }
@@ -68,9 +75,35 @@ fn voxels_of<const LOG2: u32>(block: usize, n: usize) -> std::ops::RangeInclusiv
     first..=(first + (1 << LOG2)).min(n - 1)
 }
 
+/// The voxels of a channel, plane by plane.
+pub(super) trait Planes {
+    /// What a voxel is stored as.
+    type Sample: Voxel;
+
+    /// The voxels of a plane, x fastest.
+    fn plane(&mut self, k: usize) -> &[Self::Sample];
+}
+
+/// Planes that lie in memory.
+struct Stored<'v, V> {
+    planes: &'v [V],
+    /// Of a plane.
+    voxels: usize,
+}
+
+impl<V: Voxel> Planes for Stored<'_, V> {
+    type Sample = V;
+
+    #[inline(always)]
+    fn plane(&mut self, k: usize) -> &[V] {
+        &self.planes[k * self.voxels..][..self.voxels]
+    }
+}
+
 /// A slab of blocks, to be filled with their ranges.
-struct Slab<'f, 'v, 'r, V, K: Spacing, const LOG2: u32> {
-    field: &'f Trilinear<'v, V, K>,
+struct Slab<'p, 'r, P, const LOG2: u32> {
+    dims: [usize; 3],
+    planes: &'p mut P,
     /// Its place among the slabs.
     k: usize,
     ranges: &'r mut [[f32; 2]],
@@ -79,24 +112,26 @@ struct Slab<'f, 'v, 'r, V, K: Spacing, const LOG2: u32> {
 /// The planes of a slab are read one after the other, as they lie in memory: row by row of blocks memory was slower. Whole
 /// lines of voxels are reduced across the line first, and along it in steps that double; loops over neighbours, which the
 /// compiler fills registers with.
-impl<V: Voxel, K: Spacing, const LOG2: u32> Kernel for Slab<'_, '_, '_, V, K, LOG2> {
+impl<P: Planes, const LOG2: u32> Kernel for Slab<'_, '_, P, LOG2> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Slab { field, k, ranges } = self;
-        let [nx, ny, nz] = field.dims;
-        let [across, down, _] = BlockRanges::<LOG2>::blocks_of(field.dims);
-        let planes = voxels_of::<LOG2>(k, nz);
+        let Slab { dims, planes, k, ranges } = self;
+        let [nx, ny, nz] = dims;
+        let [across, down, _] = BlockRanges::<LOG2>::blocks_of(dims);
         // Of each row of blocks, all voxels along x.
-        let rows = (0..down).map(|j| &field.voxels[nx * ((j << LOG2) + ny * planes.start())..][..nx]);
-        let mut low = rows.collect::<Vec<_>>().concat();
-        let mut high = low.clone();
-        for z in planes {
+        let (mut low, mut high) = (Vec::with_capacity(nx * down), Vec::new());
+        for z in voxels_of::<LOG2>(k, nz) {
+            let plane = planes.plane(z);
+            if low.is_empty() {
+                let rows = (0..down).map(|j| &plane[nx * (j << LOG2)..][..nx]);
+                rows.for_each(|row| low.extend_from_slice(row));
+                high.clone_from(&low);
+            }
             for (j, (low, high)) in low.chunks_exact_mut(nx).zip(high.chunks_exact_mut(nx)).enumerate() {
                 let lines = voxels_of::<LOG2>(j, ny);
-                let lines = &field.voxels[nx * (lines.start() + ny * z)..nx * (lines.end() + 1 + ny * z)];
-                extend(low, high, lines);
+                extend(low, high, &plane[nx * lines.start()..nx * (lines.end() + 1)]);
             }
         }
         for (j, row) in ranges.chunks_exact_mut(across).enumerate() {

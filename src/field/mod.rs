@@ -16,6 +16,7 @@
 //! * *Macrocells* ([`Macrocells`]): lowest and highest stored value of blocks of 8³ cells, and likewise of the magnitude.
 
 mod batch;
+mod bricks;
 mod chord;
 mod chords;
 mod corners;
@@ -35,7 +36,7 @@ pub use corners::Corners;
 pub use gradient::GradientUnits;
 pub use macrocell::{BLOCK_CELLS, BlockRanges, Macrocells};
 pub use magnitude::{
-    Magnitude, Magnitudes, gradient_magnitude_per_mm, gradient_magnitude_row, gradient_magnitudes,
+    Magnitude, Magnitudes, Steps, gradient_magnitude_per_mm, gradient_magnitude_row, gradient_magnitudes,
     gradient_range_per_mm,
 };
 pub use position::{Cell, Pace, Position, Step};

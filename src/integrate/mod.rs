@@ -14,6 +14,7 @@ mod occupancy;
 mod reference;
 mod select;
 mod shade;
+mod shown;
 mod survey;
 mod texels;
 mod tiles;

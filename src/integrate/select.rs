@@ -8,6 +8,7 @@ use super::march::{
     suits_packets,
 };
 use super::shade::{LaneShader, Lit, Shader, Unlit};
+use super::shown::Shown;
 use super::texels::{Component, Rgba, Texels};
 use super::tiles::Tally;
 use super::{Frame, KernelName, Rendered, Statistics};
@@ -16,8 +17,8 @@ use crate::classify::{
 };
 use crate::error::Result;
 use crate::field::{
-    BlockRanges, GradientUnits, MOST_VOXELS_PER_STEP, Macrocells, Magnitude, Magnitudes, SliceTable, Spacing,
-    Trilinear, Voxel, gradient_range_per_mm,
+    GradientUnits, MOST_VOXELS_PER_STEP, Macrocells, Magnitude, SliceTable, Spacing, Trilinear, Voxel,
+    gradient_range_per_mm,
 };
 use crate::image::Image;
 use crate::plan::{Lattice, March, Reflection, Table};
@@ -255,20 +256,12 @@ fn surveyed<'a, const LOG2: u32, V: Voxel, K: Spacing, C: ByPlace>(
     field: &Trilinear<'_, V, K>,
     classifier: &C,
 ) -> Result<(Option<Magnitude<'a>>, Option<&'a EmptySpace>)> {
-    let (survey, volume) = (frame.survey, frame.volume);
-    let magnitudes = C::READS_GRADIENT.then(|| {
-        let units = || GradientUnits::new(volume.grid(), volume.rescale());
-        survey.magnitudes.get_or_init(|| Magnitudes::new(field, &units()))
+    let Shown { magnitudes, empty_space } = frame.survey.shown.get_or_init(|| {
+        let units = GradientUnits::new(frame.volume.grid(), frame.volume.rescale());
+        Shown::new::<LOG2, _, _, _>(field, &units, classifier, frame.schedule.empty_space_skipping)
     });
-    let magnitude = magnitudes.map(|m| m.field(field.dims())).transpose()?;
-    // Blocks are counted in even steps.
-    let empty_space = (frame.schedule.empty_space_skipping && K::EVEN).then(|| {
-        survey.empty_space.get_or_init(|| {
-            let magnitudes = magnitude.as_ref().map(Magnitude::ranges::<LOG2>);
-            EmptySpace::new(&BlockRanges::<LOG2>::new(field), magnitudes.as_ref(), classifier)
-        })
-    });
-    Ok((magnitude, empty_space))
+    let magnitude = magnitudes.as_ref().map(|m| m.field(field.dims())).transpose()?;
+    Ok((magnitude, empty_space.as_ref()))
 }
 
 fn name<V: Voxel, C: ByPlace, S: Shader>() -> String {

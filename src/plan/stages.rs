@@ -1,5 +1,6 @@
 //! What is computed, in order, and what is not, and why.
 
+use crate::field::Steps;
 use crate::scene::{ClassifyAt, Model, Scene, ValueModel, ValueOf};
 use crate::spec::Spec;
 use crate::transfer::TransferFunction;
@@ -55,7 +56,9 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         }
     };
     if plan.demand.gradient_magnitude && matches!(plan.method, Method::March(_)) {
-        field("gradient magnitude at the voxels, by central differences, 16 bits of the largest", 2 * voxels);
+        let error = Steps::RELATIVE_ERROR;
+        let what = "gradient magnitude at voxels where something may show";
+        field(&format!("{what}, 16 bits, within {error:.0e} of the largest; at most"), 2 * voxels);
     } else if plan.demand.gradient_magnitude {
         field("gradient magnitude at corners of lit cells, by central differences, not stored", 0);
     }

@@ -8,8 +8,9 @@ use super::sampling::Sampling;
 use crate::classify::{Baked, Classifier, bake};
 use crate::error::Result;
 use crate::field::Chord;
-use crate::field::{GradientUnits, Macrocells, Magnitude, Magnitudes, Pace, Position, Trilinear, Voxel};
+use crate::field::{GradientUnits, Macrocells, Pace, Position, Trilinear, Voxel};
 use crate::integrate::empty_space::{EmptySpace, Leap};
+use crate::integrate::shown::Shown;
 use crate::integrate::tiles::{self, Radiance};
 use crate::integrate::{Frame, Rendered, Statistics};
 use crate::plan::{March, SampleRule};
@@ -68,18 +69,13 @@ fn optical_depth<V: Voxel, C: Classifier<f32>>(
 ) -> Result<Rendered> {
     let (frame, grid) = (of.frame, of.frame.volume.grid());
     let units = GradientUnits::new(grid, frame.volume.rescale());
-    let found = || Magnitudes::new(&field, &units);
-    let magnitudes = C::READS_GRADIENT.then(|| frame.survey.magnitudes.get_or_init(found));
-    let magnitude = magnitudes.map(|m| m.field(grid.dims())).transpose()?;
-    let empty_space = frame.schedule.empty_space_skipping.then(|| {
-        frame.survey.empty_space.get_or_init(|| {
-            let magnitudes = magnitude.as_ref().map(Magnitude::ranges);
-            EmptySpace::new(&Macrocells::new(&field), magnitudes.as_ref(), classifier)
-        })
-    });
+    let passes_over = frame.schedule.empty_space_skipping;
+    let shown = || Shown::new::<{ Macrocells::LOG2_CELLS }, _, _, _>(&field, &units, classifier, passes_over);
+    let Shown { magnitudes, empty_space } = frame.survey.shown.get_or_init(shown);
+    let magnitude = magnitudes.as_ref().map(|m| m.field(grid.dims())).transpose()?;
     let name = format!("march/{}/{classifier_name}/{}/f32", V::NAME, of.model.of.name());
     let probe = Extinction { field, magnitude, classifier };
-    Ok(Of { name, ..of }.integrate(probe, empty_space, |total, _| total))
+    Ok(Of { name, ..of }.integrate(probe, empty_space.as_ref(), |total, _| total))
 }
 
 /// What is shown, and how.
