@@ -75,6 +75,13 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
         inside
     }
 
+    /// Distances in memory of a cell's lines along i from its lower corner.
+    #[inline(always)]
+    fn lines_away(&self) -> [i32; 4] {
+        let [_, down, back] = self.strides.map(|stride| stride as i32);
+        [0, down, back, down + back]
+    }
+
     /// Distances in memory, of all lanes, to the next lines along j, along k, and along both.
     #[inline(always)]
     fn next_lines<L: Lanes>(&self) -> [L::Ints; 3] {
@@ -85,22 +92,13 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
     /// The interpolated stored samples.
     #[inline(always)]
     pub(crate) fn values<L: Lanes>(&self, cells: &Cells<L>) -> L {
-        let [down, back, both] = self.next_lines::<L>();
-        let a = V::pairs::<L>(self.voxels, cells.base);
-        let b = V::pairs::<L>(self.voxels, cells.base + down);
-        let c = V::pairs::<L>(self.voxels, cells.base + back);
-        let d = V::pairs::<L>(self.voxels, cells.base + both);
-        trilinear([a, b, c, d], cells.fraction)
+        trilinear(V::pairs_around::<L, 4>(self.voxels, cells.base, self.lines_away()), cells.fraction)
     }
 
     /// The lines through the cells, none of which is at the border.
     #[inline(always)]
     pub(crate) fn lines<L: Lanes>(&self, cells: &Cells<L>) -> Lines<L> {
-        let [down, back, both] = self.next_lines::<L>();
-        let first = cells.base - L::Ints::splat(1);
-        let (a, b) = (V::quads::<L>(self.voxels, first), V::quads::<L>(self.voxels, first + down));
-        let (c, d) = (V::quads::<L>(self.voxels, first + back), V::quads::<L>(self.voxels, first + both));
-        [a, b, c, d]
+        V::quads_around::<L, 4>(self.voxels, cells.base - L::Ints::splat(1), self.lines_away())
     }
 
     /// A line through cells that may be at the border, this far in memory from their lower corners.

@@ -139,13 +139,13 @@ impl<P: Planes, const LOG2: u32> Kernel for Slab<'_, '_, P, LOG2> {
             // Of each voxel and as many behind it as a block has cells, less one.
             let (mut least_from, mut most_from) = (low.to_vec(), high.to_vec());
             for log2 in 0..LOG2 {
-                join(&mut least_from, 1 << log2, least);
-                join(&mut most_from, 1 << log2, most);
+                join(&mut least_from, 1 << log2, Voxel::least);
+                join(&mut most_from, 1 << log2, Voxel::most);
             }
             for (i, range) in row.iter_mut().enumerate() {
                 let voxels = voxels_of::<LOG2>(i, nx);
                 let (first, last) = (*voxels.start(), *voxels.end());
-                *range = [least(least_from[first], low[last]).to_f32(), most(most_from[first], high[last]).to_f32()];
+                *range = [least_from[first].least(low[last]).to_f32(), most_from[first].most(high[last]).to_f32()];
             }
         }
     }
@@ -162,26 +162,16 @@ fn extend<V: Voxel>(low: &mut [V], high: &mut [V], lines: &[V]) {
         let ((a, b), (c, d)) = (ab.split_at(nx), cd.split_at(nx));
         let high = &mut high[..nx];
         for x in 0..nx {
-            low[x] = least(low[x], least(least(a[x], b[x]), least(c[x], d[x])));
-            high[x] = most(high[x], most(most(a[x], b[x]), most(c[x], d[x])));
+            low[x] = low[x].least(a[x].least(b[x]).least(c[x].least(d[x])));
+            high[x] = high[x].most(a[x].most(b[x]).most(c[x].most(d[x])));
         }
     }
     for line in fours.remainder().chunks_exact(nx) {
         for ((&v, low), high) in line.iter().zip(&mut *low).zip(&mut *high) {
-            *low = least(*low, v);
-            *high = most(*high, v);
+            *low = low.least(v);
+            *high = high.most(v);
         }
     }
-}
-
-#[inline(always)]
-fn least<V: Voxel>(a: V, b: V) -> V {
-    if b < a { b } else { a }
-}
-
-#[inline(always)]
-fn most<V: Voxel>(a: V, b: V) -> V {
-    if b > a { b } else { a }
 }
 
 /// Joins each element of a line with the one so far behind it, where there is one.

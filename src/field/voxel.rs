@@ -10,6 +10,20 @@ pub trait Voxel: Copy + Send + Sync + PartialOrd + 'static {
 
     /// `self − other`, rounded at most once.
     fn minus(self, other: Self) -> f32;
+
+    /// The smaller one.
+    #[inline(always)]
+    #[must_use]
+    fn least(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+
+    /// The larger one.
+    #[inline(always)]
+    #[must_use]
+    fn most(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
 }
 
 impl Voxel for i16 {

@@ -244,20 +244,51 @@ impl Lanes for F32x16 {
     }
     #[inline(always)]
     fn quads_i16(samples: &[i16], at: I32x16) -> [Self; 4] {
+        let [quads] = Self::quads_around_i16(samples, at, [0]);
+        quads
+    }
+    #[inline(always)]
+    fn quads_around_i16<const N: usize>(samples: &[i16], at: I32x16, away: [i32; N]) -> [[Self; 4]; N] {
+        let (mut least, mut most) = (away[0], away[0]);
+        for n in 1..N {
+            (least, most) = (Ord::min(least, away[n]), Ord::max(most, away[n]));
+        }
+        let mut quads = [[F32x16::ZERO; 4]; N];
+        let Some(last) = last_quad(samples).checked_sub((most - least) as u32) else {
+            for n in 0..N {
+                [quads[n]] = Self::quads_around_i16(samples, at + I32x16::splat(away[n]), [0]);
+            }
+            return quads;
+        };
         unsafe {
-            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_quad(samples) as i32));
-            let from = samples.as_ptr();
-            let [first, second, third, fourth] = quarters(at);
-            let low = _mm512_castsi256_si512(four_quads(from, indices(first)));
-            let low = _mm512_inserti64x4::<1>(low, four_quads(from, indices(second)));
-            let high = _mm512_castsi256_si512(four_quads(from, indices(third)));
-            let high = _mm512_inserti64x4::<1>(high, four_quads(from, indices(fourth)));
+            let at = _mm512_add_epi32(at.0, _mm512_set1_epi32(least));
+            let quarters = quarters(_mm512_min_epu32(at, _mm512_set1_epi32(last as i32)));
+            // Indices leave their register once for all quads.
+            let from = |n: usize| samples.as_ptr().add((away[n] - least) as usize);
+            let (mut low, mut high) = ([_mm512_setzero_si512(); N], [_mm512_setzero_si512(); N]);
+            let places = indices(quarters[0]);
+            for n in 0..N {
+                low[n] = _mm512_castsi256_si512(four_quads(from(n), places));
+            }
+            let places = indices(quarters[1]);
+            for n in 0..N {
+                low[n] = _mm512_inserti64x4::<1>(low[n], four_quads(from(n), places));
+            }
+            let places = indices(quarters[2]);
+            for n in 0..N {
+                high[n] = _mm512_castsi256_si512(four_quads(from(n), places));
+            }
+            let places = indices(quarters[3]);
             let even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
             let odd = _mm512_add_epi32(even, _mm512_set1_epi32(1));
-            let [first, second] = halves(_mm512_permutex2var_epi32(low, even, high));
-            let [third, fourth] = halves(_mm512_permutex2var_epi32(low, odd, high));
-            [first, second, third, fourth]
+            for n in 0..N {
+                let high = _mm512_inserti64x4::<1>(high[n], four_quads(from(n), places));
+                let [first, second] = halves(_mm512_permutex2var_epi32(low[n], even, high));
+                let [third, fourth] = halves(_mm512_permutex2var_epi32(low[n], odd, high));
+                quads[n] = [first, second, third, fourth];
+            }
         }
+        quads
     }
     #[inline(always)]
     fn quads_f32(samples: &[f32], at: I32x16) -> [Self; 4] {

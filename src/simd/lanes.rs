@@ -89,6 +89,15 @@ pub(crate) trait Lanes: Number {
     fn quads_i16(samples: &[i16], at: Self::Ints) -> [Self; 4];
     /// The samples from `at` to `at + 3`: see [`Pairs`].
     fn quads_f32(samples: &[f32], at: Self::Ints) -> [Self; 4];
+    /// Those at several distances from `at`.
+    #[inline(always)]
+    fn quads_around_i16<const N: usize>(samples: &[i16], at: Self::Ints, away: [i32; N]) -> [[Self; 4]; N] {
+        let mut quads = [[Self::ZERO; 4]; N];
+        for n in 0..N {
+            quads[n] = Self::quads_i16(samples, at + Self::Ints::splat(away[n]));
+        }
+        quads
+    }
     /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
     fn compress(self, mask: Self::Mask) -> Self;
     /// The first lanes, in order, where the mask is true; the others are unspecified.
@@ -230,6 +239,8 @@ pub(crate) trait Pairs: Sized {
     fn pairs_around<L: Lanes, const N: usize>(samples: &[Self], at: L::Ints, away: [i32; N]) -> [[L; 2]; N];
     /// The samples from `at` to `at + 3`, as f32; likewise, of a slice of at least four.
     fn quads<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 4];
+    /// Those at these distances from `at`.
+    fn quads_around<L: Lanes, const N: usize>(samples: &[Self], at: L::Ints, away: [i32; N]) -> [[L; 4]; N];
 }
 
 impl Pairs for i16 {
@@ -244,6 +255,10 @@ impl Pairs for i16 {
     #[inline(always)]
     fn quads<L: Lanes>(samples: &[i16], at: L::Ints) -> [L; 4] {
         L::quads_i16(samples, at)
+    }
+    #[inline(always)]
+    fn quads_around<L: Lanes, const N: usize>(samples: &[i16], at: L::Ints, away: [i32; N]) -> [[L; 4]; N] {
+        L::quads_around_i16(samples, at, away)
     }
 }
 
@@ -263,6 +278,14 @@ impl Pairs for f32 {
     #[inline(always)]
     fn quads<L: Lanes>(samples: &[f32], at: L::Ints) -> [L; 4] {
         L::quads_f32(samples, at)
+    }
+    #[inline(always)]
+    fn quads_around<L: Lanes, const N: usize>(samples: &[f32], at: L::Ints, away: [i32; N]) -> [[L; 4]; N] {
+        let mut quads = [[L::ZERO; 4]; N];
+        for n in 0..N {
+            quads[n] = L::quads_f32(samples, at + L::Ints::splat(away[n]));
+        }
+        quads
     }
 }
 

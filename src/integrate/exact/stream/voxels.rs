@@ -1,5 +1,7 @@
 //! Samples at the corners of cells, in lanes.
 
+use std::ops::Range;
+
 use glam::DMat3;
 
 use crate::field::{BlockRanges, Trilinear, Voxel};
@@ -16,6 +18,22 @@ pub(in crate::integrate::exact) struct Voxels<'a, V> {
     to_value_per_mm: DMat3,
     /// Whether the axes are the patient's.
     is_diagonal: bool,
+}
+
+/// The samples at the corners of cells along a line, of each the smallest and the largest.
+#[derive(Debug)]
+pub(super) struct Ranges<V> {
+    /// Of corners across the line.
+    least: Vec<V>,
+    most: Vec<V>,
+    pub(super) low: Vec<f32>,
+    pub(super) high: Vec<f32>,
+}
+
+impl<V> Ranges<V> {
+    pub(super) fn new() -> Self {
+        Ranges { least: Vec::new(), most: Vec::new(), low: Vec::new(), high: Vec::new() }
+    }
 }
 
 /// The lower corners of cells, voxel indices.
@@ -53,12 +71,38 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     /// Stored samples at the corners of cells, x fastest.
     #[inline(always)]
     pub(super) fn corners<L: Lanes>(&self, base: L::Ints) -> [L; 8] {
+        let [_, row, slab] = self.strides();
+        let [[a, b], [c, d], [e, f], [g, h]] = V::pairs_around::<L, 4>(self.samples, base, [0, row, slab, row + slab]);
+        [a, b, c, d, e, f, g, h]
+    }
+
+    /// The smallest and the largest sample at the corners of cells along line `(j, k)`. Loops over neighbours, which the compiler fills
+    /// registers with.
+    #[inline(always)]
+    pub(super) fn ranges_of_cells(&self, [j, k]: [usize; 2], cells: Range<usize>, ranges: &mut Ranges<V>) {
         let [nx, ny, _] = self.dims;
-        let mut corners = [L::ZERO; 8];
-        for (row, offset) in [0, nx, nx * ny, nx + nx * ny].into_iter().enumerate() {
-            [corners[2 * row], corners[2 * row + 1]] = self.pair::<L>(base + splat::<L>(offset));
+        let line = |j: usize, k: usize| &self.samples[cells.start + nx * (j + ny * k)..][..cells.len() + 1];
+        let (a, b, c, d) = (line(j, k), line(j + 1, k), line(j, k + 1), line(j + 1, k + 1));
+        let Ranges { least, most, low, high } = ranges;
+        least.clear();
+        most.clear();
+        least.extend(a.iter().zip(b).zip(c).zip(d).map(
+            #[inline(always)]
+            |(((a, &b), c), &d)| a.least(b).least(c.least(d)),
+        ));
+        most.extend(a.iter().zip(b).zip(c).zip(d).map(
+            #[inline(always)]
+            |(((a, &b), c), &d)| a.most(b).most(c.most(d)),
+        ));
+        // With room for a register behind the last.
+        low.resize(cells.len() + BATCH, 0.0);
+        high.resize(cells.len() + BATCH, 0.0);
+        for ((here, &next), low) in least.iter().zip(&least[1..]).zip(low) {
+            *low = here.least(next).to_f32();
         }
-        corners
+        for ((here, &next), high) in most.iter().zip(&most[1..]).zip(high) {
+            *high = here.most(next).to_f32();
+        }
     }
 
     /// From a voxel to the next along each axis, in memory.
@@ -123,10 +167,8 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
         let half = L::from_f64(0.5);
         let before = base - splat::<L>(1);
         // Corner by corner, in place of loops over arrays that would be cleared first.
-        let [a, c0, c1, b] = V::quads::<L>(self.samples, before);
-        let [d, c2, c3, e] = V::quads::<L>(self.samples, before + L::Ints::splat(row));
-        let [f, c4, c5, g] = V::quads::<L>(self.samples, before + L::Ints::splat(slab));
-        let [h, c6, c7, i] = V::quads::<L>(self.samples, before + L::Ints::splat(row + slab));
+        let [[a, c0, c1, b], [d, c2, c3, e], [f, c4, c5, g], [h, c6, c7, i]] =
+            V::quads_around::<L, 4>(self.samples, before, [0, row, slab, row + slab]);
         let x = [c1 - a, b - c0, c3 - d, e - c2, c5 - f, g - c4, c7 - h, i - c6];
         let beyond = [-row, 2 * row, slab - row, slab + 2 * row];
         let [[a, b], [c, d], [e, f], [g, h]] = V::pairs_around::<L, 4>(self.samples, base, beyond);
