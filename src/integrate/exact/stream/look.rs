@@ -1,4 +1,5 @@
-//! From cells to cubics: reads corners, drops cells in which nothing shows, and sets apart those that cross a knot.
+//! From cells to cubics: passes over cells whose corners are dark, reads those of the others, a register full at a time, and sets apart
+//! those that cross a knot.
 
 use super::axis::Axis;
 use super::candidates::Candidates;

@@ -1,8 +1,9 @@
 //! The fast kernel: many cells of many rays side by side, in vector registers.
 //!
 //! What a cell does to light does not depend on the light that reaches it. So rays are worked off in rounds of a few hundred
-//! cells, in four steps: rays `walk`, a lane each, leaping over blocks in which nothing shows, and `look` reads the corners of the
-//! cells that they pass, drops those in which nothing shows and makes the cubics of the others, without gaps between them;
+//! cells, in four steps: rays `walk`, a lane each, leaping over blocks in which nothing shows, and of the cells that they pass those that
+//! `lit_cells` has a bit for wait as `candidates` until they fill a register; `look` reads the corners of these, drops those in which
+//! nothing shows after all and makes the cubics of the others, without gaps between them;
 //! `pieces`, or `shaded` where there is light, cuts those at the knots and integrates; and `front` composites the results front
 //! to back, again a ray per lane, within each ray's budget. A cell whose proven error is more than the budget allows, or whose
 //! cuts rounding might have misplaced, is integrated again in f64 by the twin of this kernel.
