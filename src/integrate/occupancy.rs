@@ -1,7 +1,5 @@
 //! Where something may show: blocks of cells, and the empty neighbourhoods around the others.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use crate::field::BlockRanges;
@@ -64,23 +62,6 @@ impl Occupancy {
         });
     }
 
-    /// The cells along i in the blocks of a row, by its place among the rows, in which something may show: spans with so many empty blocks
-    /// between them, or more.
-    pub(super) fn spans(&self, [j, k]: [usize; 2], apart: usize) -> Vec<Range<usize>> {
-        let [nx, ny, _] = self.blocks;
-        let mut spans: Vec<Range<usize>> = Vec::new();
-        for (i, _) in self.empty[nx * (j + ny * k)..][..nx].iter().enumerate().filter(|&(_, &empty)| empty == 0) {
-            match spans.last_mut() {
-                Some(span) if i < span.end + apart => span.end = i + 1,
-                _ => spans.push(i..i + 1),
-            }
-        }
-        for span in &mut spans {
-            *span = span.start << LOG2_BLOCK..span.end << LOG2_BLOCK;
-        }
-        spans
-    }
-
     /// The cubes of cells around cells in which nothing shows: the base-2 logarithm of their cells per axis, 0 where
     /// something may show.
     #[inline(always)]
@@ -128,19 +109,5 @@ mod tests {
         }
         assert!(largest >= 5, "found cubes of up to 2^{largest} cells");
         assert_eq!(Occupancy::full(dims).around::<f32>([5, 5, 5]), 0);
-    }
-
-    #[test]
-    fn spans_hold_all_blocks_that_may_show_and_no_wide_gap() {
-        let dims = [401, 9, 9];
-        let mut samples = vec![0i16; dims.iter().product()];
-        for i in [10, 18, 60, 399] {
-            samples[i + dims[0] * (2 + dims[1] * 2)] = 100;
-        }
-        let macrocells = BlockRanges::<LOG2_BLOCK>::new(&Trilinear::new(&samples, dims).unwrap());
-        let occupancy = Occupancy::new(&macrocells, |[_, high]| high > 50.0);
-        assert_eq!(occupancy.spans([0, 0], 4), [8..20, 56..64, 396..400], "voxel 60 lights the cells on both sides");
-        assert_eq!(occupancy.spans([0, 0], 1), [8..12, 16..20, 56..64, 396..400]);
-        assert_eq!(occupancy.spans([1, 1], 4), [], "nothing near");
     }
 }

@@ -76,9 +76,6 @@ pub(super) fn computed(plan: &Plan, volume: &VolumeInfo) -> Vec<Stage> {
         };
         let what = format!("macrocells: value ranges of blocks of {cells} x {cells} x {cells} cells");
         field(&what, bytes * block_count(&volume.grid, cells));
-        if matches!(plan.exact_kernel, Some(ExactKernel::InRegisters(_))) {
-            field("cells in which something may show, a bit for each", voxels.div_ceil(8));
-        }
     }
     if let Some(classes) = &plan.label_classes {
         stages.push(Stage {

@@ -54,7 +54,7 @@ use ray::{Brightest, Frame};
 use shade::{Lit, Unlit};
 use shown::Shown;
 use splits::Splits;
-use stream::{Estimate, Fields, Function, Lighting, LitCells, OfValue, OfValueAndMagnitude, Read, Stream, Voxels};
+use stream::{Estimate, Fields, Function, Lighting, OfValue, OfValueAndMagnitude, Read, Stream, Voxels};
 
 pub use ray::Traced;
 pub(super) use toward_light::{TowardLight, toward_light};
@@ -297,7 +297,6 @@ impl<'a> Of<'a> {
             true => voxels.occupancy(|range| !classifier.is_empty(range, everything)),
             false => Occupancy::full(volume.grid().dims()),
         };
-        let lit_cells = LitCells::new(&voxels, &occupancy, &function, level);
         let brightest = Brightest::of(scene);
         let lighting = scene.shading.as_ref().and_then(|shading| Lighting::new(shading, brightest.color));
         let estimate = (bound == Bound::Estimated).then(|| Estimate::within(tolerance));
@@ -310,20 +309,7 @@ impl<'a> Of<'a> {
             (Some(_), Some(_)) => "lit",
         };
         let name = format!("exact/{voxel}/{name}/{lit}/{level}");
-        Box::new(Stream {
-            level,
-            frame,
-            grid,
-            clip,
-            voxels,
-            occupancy,
-            lit_cells,
-            function,
-            lighting,
-            estimate,
-            double,
-            name,
-        })
+        Box::new(Stream { level, frame, grid, clip, voxels, occupancy, function, lighting, estimate, double, name })
     }
 
     /// What all rays share.

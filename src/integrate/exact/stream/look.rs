@@ -1,13 +1,10 @@
-//! From cells to cubics: passes over cells whose corners are dark, reads those of the others, a register full at a time, and sets apart
-//! those that cross a knot.
+//! From cells to cubics: reads corners, drops cells in which nothing shows, and sets apart those that cross a knot.
 
 use super::axis::Axis;
-use super::candidates::Candidates;
 use super::function::Function;
-use super::lit_cells::LitCells;
 use super::queue::{Passed, Shown, Way};
 use super::voxels::{Corners, Voxels, magnitudes};
-use super::walk::{AHEAD, Cells, Lines, RAYS, Sides};
+use super::walk::{AHEAD, Cells, Lines, RAYS};
 use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, range, trilinear_along};
 use crate::simd::{Ints, Lanes, Mask, Pairs};
@@ -58,115 +55,64 @@ impl Fields<2> for Read {
     }
 }
 
-/// What is looked into, and what with.
-pub(super) struct View<'s, 'a, V, T> {
-    pub(super) voxels: &'s Voxels<'a, V>,
-    pub(super) lit_cells: &'s LitCells,
-    pub(super) function: &'s T,
-    pub(super) is_lit: bool,
-}
-
-/// Cells whose fields stay in one interval, and those that may cross a knot.
-pub(super) struct Sorted<'s, const F: usize> {
-    pub(super) whole: &'s mut Shown<F>,
-    pub(super) cut: &'s mut Shown<F>,
-}
-
-impl<V, T> View<'_, '_, V, T>
-where
-    V: Voxel + Pairs,
+/// Looks into the cells that rays pass at several steps, the first lane's slot at the first step being `first`. Those whose fields
+/// stay in one interval go to `whole`, those that may cross a knot to `cut`. `corners` is room for samples.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "what is read, what with, and where it goes")]
+pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
+    lines: &Lines<L>,
+    steps: &[Cells<L>; AHEAD],
+    first: usize,
+    voxels: &Voxels<'_, V>,
+    corners: &mut [[L; 8]; AHEAD],
+    function: &impl Function<F>,
+    is_lit: bool,
+    passed: &mut Passed,
+    whole: &mut Shown<F>,
+    cut: &mut Shown<F>,
+) where
+    Read: Fields<F>,
 {
-    /// Lets those of the cells wait that rays pass at several steps, the first lane's slot at the first step being `first`, in which
-    /// something may show: most do not, and what is read of the others is worth a register full of them.
-    #[inline(always)]
-    pub(super) fn choose<L: Lanes, const F: usize>(
-        &self,
-        lines: &Lines<L>,
-        steps: &[Cells<L>; AHEAD],
-        first: usize,
-        passed: &mut Passed,
-        candidates: &mut Candidates,
-    ) {
-        for (n, cells) in steps.iter().enumerate() {
-            let chosen = self.lit_cells.among::<L>(cells.passes, cells.base);
-            if !chosen.any() {
-                continue;
-            }
-            let slot = first + n * RAYS;
-            cells.base.store(&mut passed.base[slot..]);
-            cells.exit_mm().store(&mut passed.exit_mm[slot..]);
-            if self.is_lit {
-                candidates.are_inner &= self.voxels.are_inner::<L>(&lines.cell(cells), chosen);
-            }
-            candidates.append(chosen, slot, cells, (F > 1).then(|| lines.cell(cells)));
-        }
+    // Corners alone already say that most cells are dark. First those of all steps, so that no read waits for another.
+    let mut may_show = [<L::Mask as Mask>::ALL; AHEAD];
+    for n in 0..AHEAD {
+        // Where no ray passes a cell, memory is left alone.
+        let base = L::Ints::select(steps[n].passes, steps[n].base, L::Ints::splat(0));
+        corners[n] = voxels.corners::<L>(base);
+        let [low, high] = range(&corners[n]);
+        may_show[n] = steps[n].passes.and_not(function.is_dark(low, high));
     }
-
-    /// Looks into the cells that wait, registers full of them; or, at the end of a round, into all.
-    #[inline(always)]
-    pub(super) fn look<L: Lanes, const F: usize>(
-        &self,
-        candidates: &mut Candidates,
-        corners: &mut [[L; 8]; AHEAD],
-        sides: &Sides<'_>,
-        all: bool,
-        sorted: &mut Sorted<'_, F>,
-    ) where
-        T: Function<F>,
-        Read: Fields<F>,
-    {
-        sorted.whole.are_inner &= candidates.are_inner;
-        sorted.cut.are_inner &= candidates.are_inner;
-        let count =
-            if all { candidates.count.next_multiple_of(L::LANES) } else { candidates.count / L::LANES * L::LANES };
-        if count == 0 {
-            return;
+    for n in 0..AHEAD {
+        if !may_show[n].any() {
+            continue;
         }
-        for some in (0..count).step_by(AHEAD * L::LANES) {
-            let registers = (some..count.min(some + AHEAD * L::LANES)).step_by(L::LANES);
-            // First the corners of all, so that no read waits for another.
-            for (n, first) in registers.clone().enumerate() {
-                corners[n] = self.voxels.corners::<L>(L::Ints::load(&candidates.base[first..]));
-            }
-            for (n, first) in registers.enumerate() {
-                self.sort::<L, F>(candidates, first, &corners[n], sides, sorted);
-            }
-        }
-        candidates.forget(count);
-    }
-
-    /// Makes cubics of a register's cells, whose corners are given, and sorts them.
-    #[inline(always)]
-    fn sort<L: Lanes, const F: usize>(
-        &self,
-        candidates: &Candidates,
-        first: usize,
-        corners: &[L; 8],
-        sides: &Sides<'_>,
-        sorted: &mut Sorted<'_, F>,
-    ) where
-        T: Function<F>,
-        Read: Fields<F>,
-    {
-        let slots = L::Ints::load(&candidates.slot[first..]);
-        let waits = L::Ints::count().lt(L::Ints::splat(candidates.count.saturating_sub(first) as i32));
-        let [from_mm, to_mm] = candidates.ends_mm::<L>(first);
-        let seats = slots.and(L::Ints::splat(RAYS as i32 - 1));
-        let [from, to] = sides.coordinates(seats, [from_mm, to_mm], candidates.next_mm::<L>(first));
-        let at = Corners { cell: candidates.cell::<L>(first), base: L::Ints::load(&candidates.base[first..]) };
-        let fields = <Read as Fields<F>>::along(self.voxels, &at, corners, from, to);
+        let (cells, corners, slot) = (&steps[n], &corners[n], first + n * RAYS);
+        let at = Corners { cell: lines.cell(cells), base: cells.base };
+        let (from, to) = (lines.coordinates(cells, cells.from_mm), lines.coordinates(cells, cells.to_mm));
+        let fields = <Read as Fields<F>>::along(voxels, &at, corners, from, to);
         let mut least = [L::Ints::splat(0); F];
         let mut most = least;
         let mut stays = <L::Mask as Mask>::ALL;
         for f in 0..F {
-            [least[f], most[f]] = intervals(self.function.axis(f), &fields[f]);
+            [least[f], most[f]] = intervals(function.axis(f), &fields[f]);
             stays = stays.and(least[f].eq(most[f]));
         }
-        let shows = waits.and_not(self.function.is_empty::<L>(least, most));
-        let way = self.is_lit.then_some(Way { base: at.base, from, to });
-        let length_mm = to_mm - from_mm;
-        sorted.whole.append(shows.and(stays), slots, &fields, Some(&least), length_mm, way.as_ref());
-        sorted.cut.append(shows.and_not(stays), slots, &fields, None, length_mm, way.as_ref());
+        let shows = may_show[n].and_not(function.is_empty::<L>(least, most));
+        if !shows.any() {
+            continue;
+        }
+        at.base.store(&mut passed.base[slot..]);
+        cells.exit_mm().store(&mut passed.exit_mm[slot..]);
+        let slots = L::Ints::count() + L::Ints::splat(slot as i32);
+        let length_mm = cells.to_mm - cells.from_mm;
+        let way = is_lit.then_some(Way { base: at.base, from, to });
+        if is_lit {
+            let are_inner = voxels.are_inner::<L>(&at.cell, shows);
+            whole.are_inner &= are_inner;
+            cut.are_inner &= are_inner;
+        }
+        whole.append(shows.and(stays), slots, &fields, Some(&least), length_mm, way.as_ref());
+        cut.append(shows.and_not(stays), slots, &fields, None, length_mm, way.as_ref());
     }
 }
 

@@ -1,9 +1,8 @@
 //! The fast kernel: many cells of many rays side by side, in vector registers.
 //!
 //! What a cell does to light does not depend on the light that reaches it. So rays are worked off in rounds of a few hundred
-//! cells, in four steps: rays `walk`, a lane each, leaping over blocks in which nothing shows, and of the cells that they pass those that
-//! `lit_cells` has a bit for wait as `candidates` until they fill a register; `look` reads the corners of these, drops those in which
-//! nothing shows after all and makes the cubics of the others, without gaps between them;
+//! cells, in four steps: rays `walk`, a lane each, leaping over blocks in which nothing shows, and `look` reads the corners of the
+//! cells that they pass, drops those in which nothing shows and makes the cubics of the others, without gaps between them;
 //! `pieces`, or `shaded` where there is light, cuts those at the knots and integrates; and `front` composites the results front
 //! to back, again a ray per lane, within each ray's budget. A cell whose proven error is more than the budget allows, or whose
 //! cuts rounding might have misplaced, is integrated again in f64 by the twin of this kernel.
@@ -12,13 +11,11 @@
 //! processor, for any number of threads and any order of tiles.
 
 mod axis;
-mod candidates;
 mod crossing;
 mod front;
 mod function;
 mod light;
 mod lit;
-mod lit_cells;
 mod look;
 mod nodes;
 mod parts;
@@ -46,18 +43,16 @@ use crate::plan::Bound;
 use crate::scene::{Clip, Ray, Rays};
 use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
-use candidates::Candidates;
 use crossing::Beginnings;
 use front::Fronts;
 use light::Seen;
 use lit::{Allowance, Scenery, lit};
-use look::{Sorted, View};
+use look::look;
 use queue::{Passed, ROOM, Results, Shown};
 use walk::{AHEAD, RAYS, Walks};
 
 pub(super) use function::{Function, OfValue, OfValueAndMagnitude};
 pub(super) use light::Lighting;
-pub(super) use lit_cells::LitCells;
 pub(super) use look::{Fields, Read};
 pub(super) use shaded::{DEVIATIONS, Estimate};
 pub(super) use voxels::Voxels;
@@ -70,7 +65,6 @@ pub(super) struct Stream<'a, V, T, D, const F: usize> {
     pub(super) clip: &'a Clip,
     pub(super) voxels: Voxels<'a, V>,
     pub(super) occupancy: Occupancy,
-    pub(super) lit_cells: LitCells,
     pub(super) function: T,
     pub(super) lighting: Option<Lighting>,
     /// Shares of the tolerance, if what shading misses is estimated.
@@ -121,7 +115,6 @@ where
 struct Scratch<const F: usize> {
     chords: Chords,
     passed: Passed,
-    candidates: Candidates,
     /// Cells whose fields stay in one interval, and those that may cross a knot.
     whole: Shown<F>,
     cut: Shown<F>,
@@ -137,7 +130,6 @@ impl<const F: usize> Scratch<F> {
         Scratch {
             chords: Chords::default(),
             passed: Passed::new(),
-            candidates: Candidates::new(),
             whole: Shown::new(),
             cut: Shown::new(),
             beginnings: Beginnings::new(),
@@ -169,8 +161,7 @@ where
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Rounds { stream, rays, ended, scratch } = self;
-        let Scratch { chords, passed, candidates, whole, cut, beginnings, gradients, unfinished, results, splits } =
-            scratch;
+        let Scratch { chords, passed, whole, cut, beginnings, gradients, unfinished, results, splits } = scratch;
         chords.of(stream.grid, stream.clip, rays);
         let (low, high) = stream.grid.index_bounds();
         let mut walks = Walks::new(stream.voxels.dims());
@@ -181,8 +172,6 @@ where
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
         let mut corners = [[L::ZERO; 8]; AHEAD];
-        let Stream { voxels, lit_cells, function, .. } = stream;
-        let view = View { voxels, lit_cells, function, is_lit: stream.lighting.is_some() };
         let mut allowance = Allowance::new(Budget::of_pieces(stream.frame.tolerance));
         loop {
             // A bit for each seat.
@@ -216,17 +205,24 @@ where
             results.clear();
             whole.clear();
             cut.clear();
-            candidates.clear();
-            let mut sorted = Sorted { whole: &mut *whole, cut: &mut *cut };
             walks.pass::<L>(
                 &stream.occupancy,
                 #[inline(always)]
-                |lines, steps, first, sides| {
-                    view.choose::<L, F>(lines, steps, first, passed, candidates);
-                    view.look::<L, F>(candidates, &mut corners, sides, false, &mut sorted);
+                |lines, steps, first| {
+                    look::<L, V, F>(
+                        lines,
+                        steps,
+                        first,
+                        &stream.voxels,
+                        &mut corners,
+                        &stream.function,
+                        stream.lighting.is_some(),
+                        passed,
+                        whole,
+                        cut,
+                    )
                 },
             );
-            view.look::<L, F>(candidates, &mut corners, &walks.sides(), true, &mut sorted);
             if let Some(lighting) = &stream.lighting {
                 for (seat, _) in seated.iter().enumerate().filter(|(_, ray)| ray.is_some()) {
                     let light = fronts.get(seat);

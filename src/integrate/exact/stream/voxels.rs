@@ -1,7 +1,5 @@
 //! Samples at the corners of cells, in lanes.
 
-use std::ops::Range;
-
 use glam::DMat3;
 
 use crate::field::{BlockRanges, Trilinear, Voxel};
@@ -18,22 +16,6 @@ pub(in crate::integrate::exact) struct Voxels<'a, V> {
     to_value_per_mm: DMat3,
     /// Whether the axes are the patient's.
     is_diagonal: bool,
-}
-
-/// The samples at the corners of cells along a line, of each the smallest and the largest.
-#[derive(Debug)]
-pub(super) struct Ranges<V> {
-    /// Of corners across the line.
-    least: Vec<V>,
-    most: Vec<V>,
-    pub(super) low: Vec<f32>,
-    pub(super) high: Vec<f32>,
-}
-
-impl<V> Ranges<V> {
-    pub(super) fn new() -> Self {
-        Ranges { least: Vec::new(), most: Vec::new(), low: Vec::new(), high: Vec::new() }
-    }
 }
 
 /// The lower corners of cells, voxel indices.
@@ -74,35 +56,6 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
         let [_, row, slab] = self.strides();
         let [[a, b], [c, d], [e, f], [g, h]] = V::pairs_around::<L, 4>(self.samples, base, [0, row, slab, row + slab]);
         [a, b, c, d, e, f, g, h]
-    }
-
-    /// The smallest and the largest sample at the corners of cells along line `(j, k)`. Loops over neighbours, which the compiler fills
-    /// registers with.
-    #[inline(always)]
-    pub(super) fn ranges_of_cells(&self, [j, k]: [usize; 2], cells: Range<usize>, ranges: &mut Ranges<V>) {
-        let [nx, ny, _] = self.dims;
-        let line = |j: usize, k: usize| &self.samples[cells.start + nx * (j + ny * k)..][..cells.len() + 1];
-        let (a, b, c, d) = (line(j, k), line(j + 1, k), line(j, k + 1), line(j + 1, k + 1));
-        let Ranges { least, most, low, high } = ranges;
-        least.clear();
-        most.clear();
-        least.extend(a.iter().zip(b).zip(c).zip(d).map(
-            #[inline(always)]
-            |(((a, &b), c), &d)| a.least(b).least(c.least(d)),
-        ));
-        most.extend(a.iter().zip(b).zip(c).zip(d).map(
-            #[inline(always)]
-            |(((a, &b), c), &d)| a.most(b).most(c.most(d)),
-        ));
-        // With room for a register behind the last.
-        low.resize(cells.len() + BATCH, 0.0);
-        high.resize(cells.len() + BATCH, 0.0);
-        for ((here, &next), low) in least.iter().zip(&least[1..]).zip(low) {
-            *low = here.least(next).to_f32();
-        }
-        for ((here, &next), high) in most.iter().zip(&most[1..]).zip(high) {
-            *high = here.most(next).to_f32();
-        }
     }
 
     /// From a voxel to the next along each axis, in memory.

@@ -210,19 +210,13 @@ impl Walks {
         }
     }
 
-    /// Where all rays are in the cells that they pass.
-    #[inline(always)]
-    pub(super) fn sides(&self) -> Sides<'_> {
-        Sides { leaves_at: &self.leaves_at, less_per_mm: &self.less_per_mm }
-    }
-
     /// Walks all rays on by a round. `pass` is given what the rays of some lanes pass at several steps, and the slot of the first
     /// ray at the first step: that of a ray at a step is its seat, plus the number of seats times the step.
     #[inline(always)]
     pub(super) fn pass<L: Lanes>(
         &mut self,
         occupancy: &Occupancy,
-        mut pass: impl FnMut(&Lines<L>, &[Cells<L>; AHEAD], usize, &Sides<'_>),
+        mut pass: impl FnMut(&Lines<L>, &[Cells<L>; AHEAD], usize),
     ) {
         self.settled_mm = self.at_mm;
         for first in (0..RAYS).step_by(L::LANES) {
@@ -238,7 +232,7 @@ impl Walks {
                     *passed = at;
                     lines.go_on(&mut at);
                 }
-                pass(&lines, &cells, first + n * RAYS, &self.sides());
+                pass(&lines, &cells, first + n * RAYS);
                 if !at.from_mm.lt(at.rest_mm).any() {
                     break;
                 }
@@ -262,7 +256,7 @@ pub(super) struct Cells<L: Lanes> {
     /// Where rays enter and leave the cell, where they cross the next faces, and where they leave the volume.
     pub(super) from_mm: L,
     pub(super) to_mm: L,
-    pub(super) next_mm: [L; 3],
+    next_mm: [L; 3],
     rest_mm: L,
 }
 
@@ -302,32 +296,6 @@ impl<L: Lanes> Cells<L> {
     }
 }
 
-/// Where rays leave the cells that they pass, whichever these are: by axis and seat.
-pub(super) struct Sides<'w> {
-    leaves_at: &'w [[f32; RAYS]; 3],
-    less_per_mm: &'w [[f32; RAYS]; 3],
-}
-
-impl Sides<'_> {
-    /// Coordinates in `[0, 1]³` of the cells that the rays of these seats pass, where they enter and where they leave: by how far it is
-    /// from there to the next faces, all of them counted from the same place.
-    #[inline(always)]
-    pub(super) fn coordinates<L: Lanes>(
-        &self,
-        seat: L::Ints,
-        [from_mm, to_mm]: [L; 2],
-        next_mm: [L; 3],
-    ) -> [[L; 3]; 2] {
-        let (mut from, mut to) = ([L::ZERO; 3], [L::ZERO; 3]);
-        for a in 0..3 {
-            let (leaves_at, less) = (L::pick32(&self.leaves_at[a], seat), L::pick32(&self.less_per_mm[a], seat));
-            from[a] = leaves_at.minus_product(next_mm[a] - from_mm, less).max(L::ZERO).min(L::ONE);
-            to[a] = leaves_at.minus_product(next_mm[a] - to_mm, less).max(L::ZERO).min(L::ONE);
-        }
-        [from, to]
-    }
-}
-
 /// What does not change along as many rays as a register has lanes.
 pub(super) struct Lines<L: Lanes> {
     entry: [L::Doubles; 3],
@@ -335,6 +303,8 @@ pub(super) struct Lines<L: Lanes> {
     mm_per: [L::Doubles; 3],
     face_zero_mm: [L::Doubles; 3],
     mm_per_face: [L; 3],
+    leaves_at: [L; 3],
+    less_per_mm: [L; 3],
     falls: [L::Mask; 3],
     last_cell: [L::Ints; 3],
     strides: [L::Ints; 3],
@@ -352,6 +322,8 @@ impl<L: Lanes> Lines<L> {
             mm_per: [zero; 3],
             face_zero_mm: [zero; 3],
             mm_per_face: [L::ZERO; 3],
+            leaves_at: [L::ZERO; 3],
+            less_per_mm: [L::ZERO; 3],
             falls: [none; 3],
             last_cell: [nothing; 3],
             strides: [nothing; 3],
@@ -363,6 +335,8 @@ impl<L: Lanes> Lines<L> {
             lines.mm_per[a] = L::Doubles::load(&walks.mm_per[a][first..]);
             lines.face_zero_mm[a] = L::Doubles::load(&walks.face_zero_mm[a][first..]);
             lines.mm_per_face[a] = L::from_doubles(lines.mm_per[a]);
+            lines.leaves_at[a] = L::load(&walks.leaves_at[a][first..]);
+            lines.less_per_mm[a] = L::load(&walks.less_per_mm[a][first..]);
             lines.falls[a] = L::Ints::load(&walks.falls[a][first..]).lt(nothing);
             lines.last_cell[a] = L::Ints::load(&walks.last_cell[a][first..]);
             lines.strides[a] = L::Ints::load(&walks.strides[a][first..]);
@@ -470,6 +444,17 @@ impl<L: Lanes> Lines<L> {
             cell[a] = L::Ints::select(self.falls[a], L::Ints::splat(-1) - cell[a], cell[a]);
         }
         cell
+    }
+
+    /// Coordinates in `[0, 1]³` of cells, at a distance that is counted as theirs are.
+    #[inline(always)]
+    pub(super) fn coordinates(&self, cells: &Cells<L>, at_mm: L) -> [L; 3] {
+        let mut coordinates = [L::ZERO; 3];
+        for a in 0..3 {
+            let x = self.leaves_at[a].minus_product(cells.next_mm[a] - at_mm, self.less_per_mm[a]);
+            coordinates[a] = x.max(L::ZERO).min(L::ONE);
+        }
+        coordinates
     }
 
     /// Where rays cross the next face across an axis.
