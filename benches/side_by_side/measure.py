@@ -124,6 +124,11 @@ def picture_sizes(pellucid, pipeline, sizes, rounds):
     return {name: by(sizes, rounds, lambda n, i=i: pellucid.seconds(pipeline, i, size=n)) for name, i in METHODS}
 
 
+def fits_memory(edge):
+    """Whether a synthetic head of so many voxels from ear to ear can be made and rendered: three times its samples."""
+    return 3 * 2 * edge**3 < os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_AVPHYS_PAGES")
+
+
 def volume_edges(pellucid, folder, edges, rounds):
     """Seconds of a frame of the synthetic head by its number of voxels from ear to ear, and of a process's first picture, for which
     every voxel is looked at."""

@@ -111,7 +111,7 @@ def targets(facts, results):
         rows.append(("4. Peak memory, 2D, lit", "≤ 2 × raw", found, max(ratios.values()) <= 2, None))
     for key, what, unit, need, holds in (
         ("speedup", "Two threads instead of one", "{:.2f} ×", "≥ 1.85 ×", lambda numbers: min(numbers) >= 1.85),
-        ("edge_exponent", "Time by the volume's edge", "edge^{:.2f}", "≤ edge^1 from the smallest to the largest",
+        ("edge_exponent", "Time by the volume's edge", "edge^{:.2f}", "≤ edge^1 from 128 to 512 voxels",
          lambda numbers: max(numbers) <= 1),
     ):
         for which, end in (("a frame", ""), ("first pictures, every voxel looked at", FIRST)):
