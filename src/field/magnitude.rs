@@ -29,9 +29,9 @@ pub struct Steps {
 #[derive(Debug, Clone)]
 enum Kept {
     /// Of all voxels.
-    All(Vec<i16>),
+    Everywhere(Vec<i16>),
     /// Of some blocks.
-    Some(Bricks),
+    InBricks(Bricks),
 }
 
 /// Steps from 0 to the largest magnitude.
@@ -58,9 +58,9 @@ impl Magnitudes {
                 let mut all = vec![0; field.voxels.len()];
                 let planes = all.par_chunks_mut(nx * ny).enumerate();
                 planes.for_each(|(k, plane)| level.run((lines(), k, plane)));
-                Kept::All(all)
+                Kept::Everywhere(all)
             },
-            Kept::Some,
+            Kept::InBricks,
         );
         let magnitudes = Magnitudes { kept, steps };
         tracing::debug!(bytes = magnitudes.bytes(), of = 2 * field.voxels.len(), "gradient magnitudes kept");
@@ -74,8 +74,8 @@ impl Magnitudes {
     pub fn field(&self, dims: [usize; 3]) -> Result<Magnitude<'_>> {
         Ok(Magnitude {
             stored: match &self.kept {
-                Kept::All(all) => Stored::All(Trilinear::new(all, dims)?),
-                Kept::Some(bricks) => Stored::Some(bricks),
+                Kept::Everywhere(all) => Stored::Everywhere(Trilinear::new(all, dims)?),
+                Kept::InBricks(bricks) => Stored::InBricks(bricks),
             },
             steps: self.steps,
         })
@@ -84,8 +84,8 @@ impl Magnitudes {
     /// Bytes of what is kept.
     pub fn bytes(&self) -> usize {
         match &self.kept {
-            Kept::All(all) => size_of_val(&**all),
-            Kept::Some(bricks) => bricks.bytes(),
+            Kept::Everywhere(all) => size_of_val(&**all),
+            Kept::InBricks(bricks) => bricks.bytes(),
         }
     }
 }
@@ -126,8 +126,8 @@ pub struct Magnitude<'a> {
 
 #[derive(Debug, Clone, Copy)]
 enum Stored<'a> {
-    All(Trilinear<'a, i16>),
-    Some(&'a Bricks),
+    Everywhere(Trilinear<'a, i16>),
+    InBricks(&'a Bricks),
 }
 
 impl Magnitude<'_> {
@@ -135,8 +135,8 @@ impl Magnitude<'_> {
     #[inline(always)]
     pub fn value(&self, cell: &Cell) -> f32 {
         let stored = match &self.stored {
-            Stored::All(all) => all.value(cell),
-            Stored::Some(bricks) => bricks.value(cell),
+            Stored::Everywhere(all) => all.value(cell),
+            Stored::InBricks(bricks) => bricks.value(cell),
         };
         self.steps.per_mm(stored)
     }
@@ -145,8 +145,8 @@ impl Magnitude<'_> {
     #[inline(always)]
     pub(crate) fn values<L: Lanes>(&self, cells: &Cells<L>) -> L {
         let stored = match &self.stored {
-            Stored::All(all) => all.values(cells),
-            Stored::Some(bricks) => bricks.values(cells),
+            Stored::Everywhere(all) => all.values(cells),
+            Stored::InBricks(bricks) => bricks.values(cells),
         };
         self.steps.per_mm(stored)
     }

@@ -89,7 +89,7 @@ pub(crate) trait Lanes: Number {
     fn quads_i16(samples: &[i16], at: Self::Ints) -> [Self; 4];
     /// The samples from `at` to `at + 3`: see [`Pairs`].
     fn quads_f32(samples: &[f32], at: Self::Ints) -> [Self; 4];
-    /// Those at several distances from `at`.
+    /// Those from several distances from `at` on.
     #[inline(always)]
     fn quads_around_i16<const N: usize>(samples: &[i16], at: Self::Ints, away: [i32; N]) -> [[Self; 4]; N] {
         let mut quads = [[Self::ZERO; 4]; N];
@@ -237,9 +237,7 @@ pub(crate) trait Pairs: Sized {
     fn pairs<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 2];
     /// The pairs at these distances from `at`.
     fn pairs_around<L: Lanes, const N: usize>(samples: &[Self], at: L::Ints, away: [i32; N]) -> [[L; 2]; N];
-    /// The samples from `at` to `at + 3`, as f32; likewise, of a slice of at least four.
-    fn quads<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 4];
-    /// Those at these distances from `at`.
+    /// The samples from each of these distances from `at` to three further on, as f32; likewise, of a slice of at least four.
     fn quads_around<L: Lanes, const N: usize>(samples: &[Self], at: L::Ints, away: [i32; N]) -> [[L; 4]; N];
 }
 
@@ -251,10 +249,6 @@ impl Pairs for i16 {
     #[inline(always)]
     fn pairs_around<L: Lanes, const N: usize>(samples: &[i16], at: L::Ints, away: [i32; N]) -> [[L; 2]; N] {
         L::pairs_around_i16(samples, at, away)
-    }
-    #[inline(always)]
-    fn quads<L: Lanes>(samples: &[i16], at: L::Ints) -> [L; 4] {
-        L::quads_i16(samples, at)
     }
     #[inline(always)]
     fn quads_around<L: Lanes, const N: usize>(samples: &[i16], at: L::Ints, away: [i32; N]) -> [[L; 4]; N] {
@@ -274,10 +268,6 @@ impl Pairs for f32 {
             pairs[n] = L::pairs_f32(samples, at + L::Ints::splat(away[n]));
         }
         pairs
-    }
-    #[inline(always)]
-    fn quads<L: Lanes>(samples: &[f32], at: L::Ints) -> [L; 4] {
-        L::quads_f32(samples, at)
     }
     #[inline(always)]
     fn quads_around<L: Lanes, const N: usize>(samples: &[f32], at: L::Ints, away: [i32; N]) -> [[L; 4]; N] {

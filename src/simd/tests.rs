@@ -30,7 +30,7 @@ impl Kernel for Everything {
         let wholes: Vec<i32> = samples.iter().map(|&x| i32::from(x) * 77).collect();
         let sixteen: [f32; BATCH] = std::array::from_fn(|i| b[i]);
         let thirty_two: [f32; TWO_BATCHES] = std::array::from_fn(|i| b[i]);
-        let mut out = vec![Vec::new(); 80];
+        let mut out = vec![Vec::new(); 96];
         for at in (0..4096).step_by(L::LANES) {
             let (x, y) = (L::load(&a[at..]), L::load(&b[at..]));
             let places = L::Ints::load(&places[at..]);
@@ -95,7 +95,11 @@ impl Kernel for Everything {
             let of_i16 = i16::pairs_around::<L, 2>(&samples, near, [-3, 2]);
             let around = [of_i16, f32::pairs_around::<L, 2>(&b, near, [5, 0])].concat().concat();
             let vectors = L::vectors(b.as_chunks::<4>().0, near);
-            let quads = [i16::quads::<L>(&samples, places), f32::quads::<L>(&b, places)].concat();
+            let quads_of_i16 = i16::quads_around::<L, 2>(&samples, near, [-8, 700]);
+            let quads_of_f32 = f32::quads_around::<L, 2>(&b, near, [900, 0]);
+            let at_ends =
+                [i16::quads_around::<L, 1>(&samples, places, [0]), f32::quads_around::<L, 1>(&b, places, [0])];
+            let quads = [at_ends.concat(), quads_of_i16.to_vec(), quads_of_f32.to_vec()].concat().concat();
             for (k, v) in
                 found.into_iter().chain(pairs).chain(around).chain(vectors).chain(quads).chain(more).enumerate()
             {
@@ -105,8 +109,8 @@ impl Kernel for Everything {
         }
         for batch in a.as_chunks::<BATCH>().0 {
             let (before, all) = L::accumulated(&batch.map(|x| crate::math::absorbed_f32(x.abs())));
-            out[78].extend(before.map(f32::to_bits));
-            out[79].extend([(all + L::sum(batch)).to_bits(); BATCH]);
+            out[94].extend(before.map(f32::to_bits));
+            out[95].extend([(all + L::sum(batch)).to_bits(); BATCH]);
         }
         out.concat()
     }
