@@ -18,7 +18,8 @@ def machine(facts):
         with open("/proc/cpuinfo") as file:
             lines = dict(line.split(":", 1) for line in file.read().split("\n\n")[0].splitlines() if ":" in line)
         lines = {key.strip(): value.strip() for key, value in lines.items()}
-        model = lines.get("model name", model)
+        # The name of a rented processor may hide which one it is.
+        model = f"{lines.get('model name', model)}, family {lines.get('cpu family', '?')} model {lines.get('model', '?')}"
         flags = ", ".join(name for name in ("avx2", "avx512f") if name in lines.get("flags", "").split())
     except OSError:
         pass
