@@ -29,7 +29,8 @@ def arguments():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--size", type=int, default=512, help="pixels of the pictures' sides")
     parser.add_argument("--certify", type=int, default=20_000, help="pixels of each picture that the oracle recomputes")
-    parser.add_argument("--edges", default="64,128,256,384,512,1024", help="voxels of the synthetic head from ear to ear; those that fit into memory")
+    parser.add_argument("--edges", default="64,128,256,384,512,1024",
+                        help="voxels of the synthetic head from ear to ear; those that fit into memory")
     parser.add_argument("--sizes", default="256,512,1024,2048", help="pixels of the picture's sides")
     parser.add_argument("--program", type=pathlib.Path, help="pellucid; built from this repository unless told")
     parser.add_argument("--data", type=pathlib.Path, help="the folder of public scans")
@@ -87,9 +88,12 @@ def run(options, work):
         say("sizes of the volume")
         edges = [edge for edge in numbers(options.edges) if measure.fits_memory(edge)]
         facts["edges"] = measure.volume_edges(pellucid, work, edges, 2)
-        asked = lambda by: {edge: seconds for edge, seconds in by.items() if 128 <= edge <= 512}
-        if len([edge for edge in edges if 128 <= edge <= 512]) > 1:
-            facts["edge_exponent"] = {name: report.exponent(asked(by)) for name, by in facts["edges"].items()}
+        # What growth is asked of.
+        asked = [edge for edge in edges if 128 <= edge <= 512]
+        if len(asked) > 1:
+            facts["edge_exponent"] = {
+                name: report.exponent({edge: by[edge] for edge in asked}) for name, by in facts["edges"].items()
+            }
     facts["minutes"] = (time.perf_counter() - begun) / 60
     return facts, results
 

@@ -97,7 +97,8 @@ fn rendered(widget: &str, rest: &str) -> (Plan, u64) {
 
 /// Bytes for gradient magnitudes, of which only those are kept that are read.
 fn kept_at_most(plan: &Plan) -> u64 {
-    plan.stages.iter().filter(|stage| stage.what.contains("at most")).map(|stage| stage.bytes).sum()
+    let is_kept = |what: &str| what.starts_with("gradient magnitude") && what.ends_with("at most");
+    plan.stages.iter().filter(|stage| is_kept(&stage.what)).map(|stage| stage.bytes).sum()
 }
 
 /// Bytes that a plan gives to stages of this name.
