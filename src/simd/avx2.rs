@@ -147,6 +147,41 @@ impl Lanes for F32x8 {
         F32x8(unsafe { _mm256_i32gather_ps::<4>(from.as_ptr(), clamped(at, last(from))) })
     }
     #[inline(always)]
+    fn store_vectors([x, y, z, w]: [Self; 4], to: &mut [[f32; 4]; BATCH]) {
+        unsafe {
+            let (xy, xy_next) = (_mm256_unpacklo_ps(x.0, y.0), _mm256_unpackhi_ps(x.0, y.0));
+            let (zw, zw_next) = (_mm256_unpacklo_ps(z.0, w.0), _mm256_unpackhi_ps(z.0, w.0));
+            // The k-th vector of each half.
+            let vectors = [
+                _mm256_shuffle_ps::<0b01_00_01_00>(xy, zw),
+                _mm256_shuffle_ps::<0b11_10_11_10>(xy, zw),
+                _mm256_shuffle_ps::<0b01_00_01_00>(xy_next, zw_next),
+                _mm256_shuffle_ps::<0b11_10_11_10>(xy_next, zw_next),
+            ];
+            for (k, both) in vectors.into_iter().enumerate() {
+                _mm_storeu_ps(to[k].as_mut_ptr(), _mm256_castps256_ps128(both));
+                _mm_storeu_ps(to[k + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(both));
+            }
+        }
+    }
+    #[inline(always)]
+    fn load_vectors(from: &[[f32; 4]]) -> [Self; 4] {
+        let from = &from[..8];
+        unsafe {
+            // The k-th vector of each half.
+            let both = |k: usize| _mm256_set_m128(_mm_loadu_ps(from[k + 4].as_ptr()), _mm_loadu_ps(from[k].as_ptr()));
+            let (a, b, c, d) = (both(0), both(1), both(2), both(3));
+            let (xy, zw) = (_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
+            let (xy_next, zw_next) = (_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d));
+            [
+                F32x8(_mm256_shuffle_ps::<0b01_00_01_00>(xy, xy_next)),
+                F32x8(_mm256_shuffle_ps::<0b11_10_11_10>(xy, xy_next)),
+                F32x8(_mm256_shuffle_ps::<0b01_00_01_00>(zw, zw_next)),
+                F32x8(_mm256_shuffle_ps::<0b11_10_11_10>(zw, zw_next)),
+            ]
+        }
+    }
+    #[inline(always)]
     fn load(from: &[f32]) -> Self {
         F32x8(unsafe { _mm256_loadu_ps(from[..8].as_ptr()) })
     }
@@ -325,6 +360,16 @@ impl Doubles for F64x8 {
     fn floor(self) -> Self {
         let [low, high] = self.0;
         F64x8(unsafe { [_mm256_floor_pd(low), _mm256_floor_pd(high)] })
+    }
+    #[inline(always)]
+    fn mul_plus(self, a: Self, b: Self) -> Self {
+        let ([p, q], [a, c], [b, d]) = (self.0, a.0, b.0);
+        F64x8(unsafe { [_mm256_fmadd_pd(p, a, b), _mm256_fmadd_pd(q, c, d)] })
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        let ([p, q], [a, c], [b, d]) = (self.0, a.0, b.0);
+        F64x8(unsafe { [_mm256_fnmadd_pd(a, b, p), _mm256_fnmadd_pd(c, d, q)] })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {

@@ -12,7 +12,7 @@ use super::lanes::{attenuation, last, last_pair, last_quad, last_word};
 use super::register::arithmetic;
 use super::{BATCH, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
 use crate::math::Number;
-use memory::{four_pairs, four_quads, indices, quarters, store_vectors, vectors};
+use memory::{four_pairs, four_quads, indices, load_vectors, quarters, store_vectors, vectors};
 
 /// Runs a kernel compiled for these instructions.
 ///
@@ -114,6 +114,10 @@ impl Lanes for F32x16 {
     #[inline(always)]
     fn store_vectors(numbers: [Self; 4], to: &mut [[f32; 4]; BATCH]) {
         store_vectors(numbers, to);
+    }
+    #[inline(always)]
+    fn load_vectors(from: &[[f32; 4]]) -> [Self; 4] {
+        load_vectors(&from[..BATCH])
     }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {

@@ -43,6 +43,20 @@ pub(crate) trait Lanes: Number {
             *to = [rows[0][k], rows[1][k], rows[2][k], rows[3][k]];
         }
     }
+    /// Vectors of four numbers, as many as there are lanes; the slice has at least as many.
+    #[inline(always)]
+    fn load_vectors(from: &[[f32; 4]]) -> [Self; 4] {
+        let mut rows = [[0.0; BATCH]; 4];
+        for (k, from) in from[..Self::LANES].iter().enumerate() {
+            for c in 0..4 {
+                rows[c][k] = from[c];
+            }
+        }
+        rows.map(
+            #[inline(always)]
+            |row| Self::load(&row),
+        )
+    }
     /// The same number in every lane.
     #[inline(always)]
     fn splat(x: f32) -> Self {
@@ -153,6 +167,10 @@ pub(crate) trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<O
     fn to_ints(self) -> Self::Ints;
     /// The largest whole number that is not larger.
     fn floor(self) -> Self;
+    /// `self · a + b`, rounded once.
+    fn mul_plus(self, a: Self, b: Self) -> Self;
+    /// `self − a · b`, rounded once.
+    fn minus_product(self, a: Self, b: Self) -> Self;
     /// The smaller one.
     fn min(self, other: Self) -> Self;
     /// The larger one.

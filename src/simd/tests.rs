@@ -219,6 +219,9 @@ impl Kernel for Stored {
         for at in (0..512).step_by(L::LANES) {
             let mut vectors = [[0.0; 4]; BATCH];
             L::store_vectors(each(|c| L::load(&rows[c][at..])), &mut vectors);
+            // And back.
+            let loaded = L::load_vectors(&vectors);
+            L::store_vectors(loaded, &mut vectors);
             all.extend_from_slice(&vectors[..L::LANES]);
         }
         all

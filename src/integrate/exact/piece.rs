@@ -22,6 +22,7 @@
 
 use crate::math::bernstein::{sum, times_linear};
 use crate::math::{Number, each};
+use crate::simd::Lanes;
 
 /// Emission and extinction along a piece: polynomials in Bernstein form with `N` coefficients, 1/mm.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +40,16 @@ pub(super) struct Integral<R> {
     pub(super) radiance: [R; 3],
     /// Largest error of a channel of `radiance`.
     pub(super) error: R,
+}
+
+impl<L: Lanes> Integral<L> {
+    /// Makes nothing of some lanes' pieces.
+    #[inline(always)]
+    pub(super) fn forget(&mut self, lanes: L::Mask) {
+        for number in self.radiance.iter_mut().chain([&mut self.absorbed, &mut self.error]) {
+            *number = L::select(lanes, L::ZERO, *number);
+        }
+    }
 }
 
 /// Shading along a piece: factors between linear functions of the piece's parameter, within an error.

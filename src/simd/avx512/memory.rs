@@ -104,3 +104,24 @@ pub(super) fn store_vectors([x, y, z, w]: [F32x16; 4], to: &mut [[f32; 4]; BATCH
         _mm512_storeu_ps(to.add(48), _mm512_shuffle_f32x4::<0xdd>(low, high));
     }
 }
+
+/// As [`Lanes::load_vectors`](crate::simd::Lanes::load_vectors).
+#[inline(always)]
+pub(super) fn load_vectors(from: &[[f32; 4]]) -> [F32x16; 4] {
+    let from = from[..BATCH].as_flattened();
+    // SAFETY: as for all registers, see the module.
+    unsafe {
+        let four = |k: usize| _mm512_loadu_ps(from[k * BATCH..][..BATCH].as_ptr());
+        let (a, b, c, d) = (four(0), four(1), four(2), four(3));
+        let first = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+        let last = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 3, 7, 11, 15, 19, 23, 27, 31);
+        let (xy, xy_next) = (_mm512_permutex2var_ps(a, first, b), _mm512_permutex2var_ps(c, first, d));
+        let (zw, zw_next) = (_mm512_permutex2var_ps(a, last, b), _mm512_permutex2var_ps(c, last, d));
+        [
+            F32x16(_mm512_shuffle_f32x4::<0x44>(xy, xy_next)),
+            F32x16(_mm512_shuffle_f32x4::<0xee>(xy, xy_next)),
+            F32x16(_mm512_shuffle_f32x4::<0x44>(zw, zw_next)),
+            F32x16(_mm512_shuffle_f32x4::<0xee>(zw, zw_next)),
+        ]
+    }
+}

@@ -66,7 +66,7 @@ impl<L: Lanes> Taken<L> {
 
     /// One number for all of the cells, and in other lanes what was there.
     #[inline(always)]
-    fn all(&self, x: L, before: L) -> L {
+    pub(super) fn all(&self, x: L, before: L) -> L {
         L::select(self.lanes, x, before)
     }
 
@@ -165,7 +165,7 @@ impl<L: Lanes, const F: usize> Crossing<L, F> {
         self.is_seated
     }
 
-    /// Goes on by a piece that ends at `to`.
+    /// Goes on by a piece that ends at `to`, where lanes are open.
     #[inline(always)]
     pub(super) fn pass(&mut self, piece: &Integral<L>, open: L::Mask, to: L) {
         let t = self.transmittance;
@@ -192,6 +192,6 @@ impl<L: Lanes, const F: usize> Crossing<L, F> {
         let integral = Integral { error: self.runs.checked(self.total.error), ..self.total };
         let mut slots = [0; crate::simd::BATCH];
         self.slot.store(&mut slots);
-        results.put(ended, &slots, &integral, are_estimated.then_some(self.variance), self.pieces);
+        results.put(ended, &slots, &integral, are_estimated.then_some(self.variance), Some(self.pieces));
     }
 }

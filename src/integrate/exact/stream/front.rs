@@ -139,7 +139,8 @@ impl Fronts {
             if !shows.any() {
                 continue;
             }
-            let (absorbed, error) = (L::load(&results.absorbed[slot..]), L::load(&results.error[slot..]));
+            let [red, green, blue, absorbed] = L::load_vectors(&results.light[slot..]);
+            let error = L::load(&results.error[slot..]);
             let exit_mm = L::load(&passed.exit_mm[slot..]).to_doubles();
             let t = sums.transmittance;
             let absorbed = t * absorbed.to_doubles();
@@ -148,8 +149,8 @@ impl Fronts {
             let allowed = by_absorption * (splat(1.0) - next) + by_length_per_mm * exit_mm;
             // Nor does NaN fit.
             let fits = shows.and(error.le(allowed - sums.spent));
-            for c in 0..3 {
-                let more = sums.radiance[c] + t * L::load(&results.radiance[c][slot..]).to_doubles();
+            for (c, radiance) in [red, green, blue].into_iter().enumerate() {
+                let more = sums.radiance[c] + t * radiance.to_doubles();
                 sums.radiance[c] = L::Doubles::select(fits, more, sums.radiance[c]);
             }
             sums.transmittance = L::Doubles::select(fits, next, t);

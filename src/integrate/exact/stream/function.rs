@@ -23,6 +23,19 @@ pub(in crate::integrate::exact) trait Function<const F: usize>: Sync {
     /// In which lanes nothing absorbs or emits for all fields in intervals from `first` to `last`.
     fn is_empty<L: Lanes>(&self, first: [L::Ints; F], last: [L::Ints; F]) -> L::Mask;
 
+    /// For each field's range of values: the interval of its lower end, in which lanes all fields stay in theirs, and in which
+    /// nothing absorbs or emits.
+    #[inline(always)]
+    fn intervals<L: Lanes>(&self, ranges: &[[L; 2]; F]) -> ([L::Ints; F], L::Mask, L::Mask) {
+        let (mut first, mut last) = ([L::Ints::splat(0); F], [L::Ints::splat(0); F]);
+        let mut stay = <L::Mask as Mask>::ALL;
+        for f in 0..F {
+            [first[f], last[f]] = self.axis(f).intervals_of(ranges[f]);
+            stay = stay.and(first[f].eq(last[f]));
+        }
+        (first, stay, self.is_empty::<L>(first, last))
+    }
+
     /// The integral over a piece on which each field stays in one interval.
     fn integrate<L: Lanes>(
         &self,
@@ -122,6 +135,18 @@ impl Function<1> for OfValue {
             let [first_lit, last_lit] = self.lit_intervals;
             last.lt(L::Ints::splat(first_lit)).or(L::Ints::splat(last_lit).lt(first))
         }
+    }
+
+    #[inline(always)]
+    fn intervals<L: Lanes>(&self, &[[low, high]]: &[[L; 2]; 1]) -> ([L::Ints; 1], L::Mask, L::Mask) {
+        let first = self.axis.interval(low);
+        let stays = high.lt(self.axis.end(first + L::Ints::splat(1)));
+        let is_empty = if self.has_gaps {
+            self.is_empty::<L>([first], [self.axis.interval(high)])
+        } else {
+            self.is_dark(low, high)
+        };
+        ([first], stays, is_empty)
     }
 
     #[inline(always)]

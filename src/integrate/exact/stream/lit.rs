@@ -12,7 +12,7 @@ use crate::field::Voxel;
 use crate::integrate::exact::piece::Integral;
 use crate::math::bernstein::{Cubic, restrict, trilinear_along};
 use crate::math::each;
-use crate::simd::{Ints, Lanes, Mask, Pairs};
+use crate::simd::{Lanes, Mask, Pairs};
 
 /// A piece is not made shorter than this fraction of a cell; what it then costs is charged to the bound.
 const SMALLEST_PIECE: f64 = 1.0 / 65536.0;
@@ -119,7 +119,7 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let fields = load_fields::<L, F>(shown, first);
         let length_mm = L::load(&shown.length_mm[first..]);
         let harm = L::from_f64(f64::from(scenery.harm_per_mm)) * length_mm;
-        let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
+        let is_cell = shown.are_cells::<L>(first);
         let cells = scenery.cells::<L>(&shown.way.load(first), shown.seats::<L>(first));
         let mut runs = Runs::new(&fields, function);
         let mut sides: [Run<L>; LIGHTS] = each(
@@ -153,7 +153,7 @@ pub(super) fn lit<L: Lanes, V: Voxel + Pairs, const F: usize>(
         }
         let error = L::select(stuck, L::from_f64(f64::INFINITY), sum.total.error);
         sum.total.error = runs.checked(error);
-        put(results, shown, first, &sum.total, None, sum.pieces);
+        put(results, shown, first, &sum.total, None, Some(sum.pieces));
     }
 }
 

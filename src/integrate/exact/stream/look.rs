@@ -2,11 +2,12 @@
 
 use super::axis::Axis;
 use super::function::Function;
-use super::queue::{Passed, Shown, Way};
+use super::queue::{Passed, Results, Shown, Way};
 use super::voxels::{Corners, Voxels, magnitudes};
 use super::walk::{AHEAD, Cells, Lines, RAYS};
 use crate::field::Voxel;
 use crate::math::bernstein::{Cubic, range, trilinear_along};
+use crate::math::each;
 use crate::simd::{Ints, Lanes, Mask, Pairs};
 
 /// Roundings that a value of a cubic may have suffered: its own, and those of the coordinates that it was made from, which may be
@@ -56,7 +57,7 @@ impl Fields<2> for Read {
 }
 
 /// Looks into the cells that rays pass at several steps, the first lane's slot at the first step being `first`. Those whose fields
-/// stay in one interval go to `whole`, those that may cross a knot to `cut`. `corners` is room for samples.
+/// stay in one interval go to `whole`, those that may cross a knot to `cut`; `results` are told of the former. `corners` is room for samples.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "what is read, what with, and where it goes")]
 pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
@@ -70,6 +71,7 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
     passed: &mut Passed,
     whole: &mut Shown<F>,
     cut: &mut Shown<F>,
+    results: &mut Results,
 ) where
     Read: Fields<F>,
 {
@@ -90,14 +92,11 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let at = Corners { cell: lines.cell(cells), base: cells.base };
         let (from, to) = (lines.coordinates(cells, cells.from_mm), lines.coordinates(cells, cells.to_mm));
         let fields = <Read as Fields<F>>::along(voxels, &at, corners, from, to);
-        let mut least = [L::Ints::splat(0); F];
-        let mut most = least;
-        let mut stays = <L::Mask as Mask>::ALL;
-        for f in 0..F {
-            [least[f], most[f]] = intervals(function.axis(f), &fields[f]);
-            stays = stays.and(least[f].eq(most[f]));
-        }
-        let shows = may_show[n].and_not(function.is_empty::<L>(least, most));
+        let (intervals, stays, is_empty) = function.intervals(&each(
+            #[inline(always)]
+            |f| all_of(function.axis(f), &fields[f]),
+        ));
+        let shows = may_show[n].and_not(is_empty);
         if !shows.any() {
             continue;
         }
@@ -111,18 +110,20 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
             whole.are_inner &= are_inner;
             cut.are_inner &= are_inner;
         }
-        whole.append(shows.and(stays), slots, &fields, Some(&least), length_mm, way.as_ref());
+        let is_whole = shows.and(stays);
+        results.expect::<L>(slot, is_whole);
+        whole.append(is_whole, slots, &fields, Some(&intervals), length_mm, way.as_ref());
         cut.append(shows.and_not(stays), slots, &fields, None, length_mm, way.as_ref());
     }
 }
 
-/// The intervals of the smallest and the largest coefficient; where a knot is steep, of all that rounding may make of them.
+/// From the smallest to the largest coefficient; where a knot is steep, all that rounding may make of them.
 #[inline(always)]
-fn intervals<L: Lanes>(axis: &Axis, cubic: &Cubic<L>) -> [L::Ints; 2] {
-    let [mut low, mut high] = range(cubic);
-    if axis.steep().is_some() {
-        let rounding = L::from_f64(ROUNDINGS * f64::from(f32::EPSILON)) * low.abs().max(high.abs());
-        (low, high) = (low - rounding, high + rounding);
+fn all_of<L: Lanes>(axis: &Axis, cubic: &Cubic<L>) -> [L; 2] {
+    let [low, high] = range(cubic);
+    if axis.steep().is_none() {
+        return [low, high];
     }
-    axis.intervals_of([low, high])
+    let rounding = L::from_f64(ROUNDINGS * f64::from(f32::EPSILON)) * low.abs().max(high.abs());
+    [low - rounding, high + rounding]
 }

@@ -10,6 +10,7 @@
 //! A lane does the same whatever its neighbours do, and the same at each level, so a picture has the same bits on every
 //! processor, for any number of threads and any order of tiles.
 
+mod arrivals;
 mod axis;
 mod crossing;
 mod front;
@@ -43,6 +44,7 @@ use crate::plan::Bound;
 use crate::scene::{Clip, Ray, Rays};
 use crate::simd::{Kernel, Lanes, Level, Pairs};
 use crate::volume::Grid;
+use arrivals::Arrivals;
 use crossing::Beginnings;
 use front::Fronts;
 use light::Seen;
@@ -163,15 +165,17 @@ where
         let Rounds { stream, rays, ended, scratch } = self;
         let Scratch { chords, passed, whole, cut, beginnings, gradients, unfinished, results, splits } = scratch;
         chords.of(stream.grid, stream.clip, rays);
-        let (low, high) = stream.grid.index_bounds();
-        let mut walks = Walks::new(stream.voxels.dims());
+        let mut arrivals = Arrivals::new(stream.grid, chords, rays);
+        let mut walks = Walks::<RAYS>::new(stream.voxels.dims());
         let mut fronts = Fronts::new(&stream.frame);
         // Who sits where, and looks where.
         let mut seated: [Option<(usize, DVec3)>; RAYS] = [None; RAYS];
-        let mut waiting = 0..rays.len();
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
         let mut corners = [[L::ZERO; 8]; AHEAD];
+        let corners_mm = stream.grid.corners_mm();
+        let longest_mm = (0..4).map(|c| corners_mm[c].distance(corners_mm[7 - c])).fold(0.0, f64::max);
+        let allowed = pieces::Allowed::new(Budget::of_pieces(stream.frame.tolerance), longest_mm);
         let mut allowance = Allowance::new(Budget::of_pieces(stream.frame.tolerance));
         loop {
             // A bit for each seat.
@@ -186,17 +190,18 @@ where
                     *ray = None;
                 }
                 while ray.is_none() {
-                    let Some(number) = waiting.next() else { break };
-                    if let Some(mut chord) = chords.get(number) {
-                        chord.entry_index = chord.entry_index.clamp(low, high);
-                        walks.enter(seat, &chord);
-                        fronts.enter(seat);
-                        let next = rays.get(number);
-                        if let Some(lighting) = &stream.lighting {
-                            seen.enter(seat, &next, &lighting.shading);
-                        }
-                        *ray = Some((number, next.direction));
+                    let Some((number, place)) = arrivals.next::<L>(&stream.occupancy) else { break };
+                    if arrivals.walks.is_over(place) {
+                        ended(number, Front::new(stream.frame.tolerance).ended(0.0));
+                        continue;
                     }
+                    walks.take(seat, &arrivals.walks, place);
+                    fronts.enter(seat);
+                    let next = rays.get(number);
+                    if let Some(lighting) = &stream.lighting {
+                        seen.enter(seat, &next, &lighting.shading);
+                    }
+                    *ray = Some((number, next.direction));
                 }
             }
             if seated.iter().all(Option::is_none) {
@@ -220,6 +225,7 @@ where
                         passed,
                         whole,
                         cut,
+                        results,
                     )
                 },
             );
@@ -242,8 +248,8 @@ where
                     shaded::halved::<L, V, F>(function, &scenery, unfinished, results);
                 }
             } else {
-                pieces::whole::<L, F>(whole, &stream.function, results);
-                pieces::cut::<L, F>(cut, &stream.function, harm_per_mm, beginnings, results);
+                pieces::whole::<L, F>(whole, &stream.function, &allowed, cut, results);
+                pieces::cut::<L, F>(cut, &stream.function, harm_per_mm, &allowed, beginnings, results);
             }
             fronts.composite::<L>(passed, results, stream.estimate.is_some(), &walks, |seat, slot, light| {
                 let Some((_, direction)) = seated[seat] else { unreachable!("cells belong to rays") };

@@ -15,51 +15,108 @@ use crate::simd::{Ints, Lanes, Mask, Table};
 /// Iterations after which a crossing is not sought any further; bisection alone would be done by then.
 const MOST_ITERATIONS: usize = 40;
 
+/// A piece is not made shorter than this fraction of a cell; what it then costs the ray's budget may refuse.
+const SMALLEST_PIECE: f64 = 1.0 / 256.0;
+
 /// The last step of an iteration for a crossing is at most so long. Newton's iteration then doubles the digits once more.
 /// Where the function does not jump, a cut that is off by `u` of a cell's length changes light by the square of `u` times what
 /// the function changes by along the cell.
 const PRECISE: f32 = 0.5 * f32::EPSILON;
-const ENOUGH: f32 = 1.0 / 128.0;
+const ENOUGH: f32 = 1.0 / 32.0;
 
-/// Integrates cells whose fields stay in their intervals.
+/// What the error of a piece may be: a share of what it absorbs, and one of its length.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Allowed {
+    by_absorption: f64,
+    per_mm: f64,
+}
+
+impl Allowed {
+    /// For rays of at most `longest_mm`; `by_absorption` and `by_length` are shares of a tolerance.
+    pub(super) fn new([by_absorption, by_length]: [f64; 2], longest_mm: f64) -> Self {
+        Allowed { by_absorption, per_mm: by_length / longest_mm }
+    }
+
+    /// What a piece may cost.
+    #[inline(always)]
+    fn of<L: Lanes>(&self, piece: &Integral<L>, length_mm: L) -> L {
+        L::from_f64(self.by_absorption).mul_plus(piece.absorbed, L::from_f64(self.per_mm) * length_mm)
+    }
+}
+
+/// Integrates cells whose fields stay in their intervals. Those of which one piece is not enough go to `cut`.
 #[inline(always)]
-pub(super) fn whole<L: Lanes, const F: usize>(shown: &Shown<F>, function: &impl Function<F>, results: &mut Results) {
+pub(super) fn whole<L: Lanes, const F: usize>(
+    shown: &Shown<F>,
+    function: &impl Function<F>,
+    allowed: &Allowed,
+    cut: &mut Shown<F>,
+    results: &mut Results,
+) {
     for first in (0..shown.count).step_by(L::LANES) {
         let fields = load_fields::<L, F>(shown, first);
         let mut interval = [L::Ints::splat(0); F];
         for f in 0..F {
             interval[f] = L::Ints::load(&shown.interval[f][first..]);
         }
-        let integral = function.integrate(interval, &fields, L::load(&shown.length_mm[first..]), &AsItIs);
-        put(results, shown, first, &integral, None, L::ONE);
+        let length_mm = L::load(&shown.length_mm[first..]);
+        let integral = function.integrate(interval, &fields, length_mm, &AsItIs);
+        put(results, shown, first, &integral, None, None);
+        let refused = shown.are_cells::<L>(first).and_not(integral.error.le(allowed.of(&integral, length_mm)));
+        cut.append(refused, L::Ints::load(&shown.slot[first..]), &fields, None, length_mm, None);
     }
 }
 
-/// Cuts cells where a field crosses a knot, and integrates the pieces. A cut across a jump that is misplaced by `u` of a cell's
-/// length does `harm_per_mm` times that length of what may be tolerated; where rounding may do so, the error is infinite.
+/// Cuts cells where a field crosses a knot, and integrates the pieces, in parts where one would miss too much. A cut across a jump
+/// that is misplaced by `u` of a cell's length does `harm_per_mm` times that length of what may be tolerated; where rounding may do
+/// so, the error is infinite.
 #[inline(always)]
 pub(super) fn cut<L: Lanes, const F: usize>(
     shown: &Shown<F>,
     function: &impl Function<F>,
     harm_per_mm: f32,
+    allowed: &Allowed,
     beginnings: &mut Beginnings<F>,
     results: &mut Results,
 ) {
     beginnings.prepare::<L>(shown, function);
     let harm_per_mm = L::from_f64(f64::from(harm_per_mm));
     let mut cells = Crossing::<L, F>::new();
+    // How far the next piece may reach.
+    let mut reach = L::ONE;
     loop {
-        let open = cells.attend(shown, beginnings, false, results, |_| ());
+        let open = cells.attend(
+            shown,
+            beginnings,
+            false,
+            results,
+            #[inline(always)]
+            |taken| reach = taken.all(L::ONE, reach),
+        );
         if !open.any() {
             break;
         }
         let from = cells.from;
         let part = cells.runs.part(function, from);
-        let along = cells.runs.fields(from, part.to);
-        let piece = function.integrate(part.interval, &along, cells.length_mm * (part.to - from), &AsItIs);
+        let mut to = part.to.min(reach);
+        let along = cells.runs.fields(from, to);
+        let mut length = to - from;
+        let piece_mm = cells.length_mm * length;
+        let mut piece = function.integrate(part.interval, &along, piece_mm, &AsItIs);
+        let most = allowed.of(&piece, piece_mm);
+        let refused = open.and_not(piece.error.le(most).or(length.le(L::from_f64(SMALLEST_PIECE))));
+        reach = L::ONE;
+        if refused.any() {
+            // The error falls with the cube of the length, what is allowed with the length.
+            let share = (most / piece.error).max(L::ZERO).sqrt() * L::from_f64(0.9);
+            length = length * share.max(L::from_f64(0.05)).min(L::from_f64(0.5));
+            reach = L::select(refused, from + length, reach);
+            to = L::select(refused, from, to);
+            piece.forget(refused);
+        }
         cells.add(&piece, cells.transmittance);
-        cells.pass(&piece, open, part.to);
-        cells.runs.advance(function, &part, part.to, open, harm_per_mm * cells.length_mm);
+        cells.pass(&piece, open, to);
+        cells.runs.advance(function, &part, to, open, harm_per_mm * cells.length_mm);
     }
 }
 
@@ -83,10 +140,9 @@ pub(super) fn put<L: Lanes, const F: usize>(
     first: usize,
     integral: &Integral<L>,
     variance: Option<L>,
-    pieces: L,
+    pieces: Option<L>,
 ) {
-    let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
-    results.put(is_cell, &shown.slot[first..], integral, variance, pieces);
+    results.put(shown.are_cells::<L>(first), &shown.slot[first..], integral, variance, pieces);
 }
 
 /// A field on its way through a cell: from one critical point to the next it is monotone, and passes its intervals in order.
@@ -333,6 +389,31 @@ struct Between<L> {
     at_to: L,
 }
 
+/// Where rising cubics take 0, as far as is known.
+struct Bracket<L> {
+    low: L,
+    high: L,
+}
+
+impl<L: Lanes> Bracket<L> {
+    #[inline(always)]
+    fn middle(&self) -> L {
+        L::from_f64(0.5) * (self.low + self.high)
+    }
+
+    /// A step of Newton's iteration, kept inside.
+    #[inline(always)]
+    fn newton(&mut self, cubic: &Powers<L>, u: L) -> L {
+        let (miss, slope) = (powers::value(cubic, u), powers::slope(cubic, u));
+        let beyond = L::ZERO.lt(miss);
+        self.high = L::select(beyond, u, self.high);
+        self.low = L::select(beyond, self.low, u);
+        let next = u - miss / slope;
+        // NaN and infinity from a flat place fail the comparison and bisect.
+        L::select(self.low.le(next).and(next.le(self.high)), next, self.middle())
+    }
+}
+
 /// Where monotone cubics take a level that lies between their values at the ends. Newton's iteration kept inside a shrinking
 /// bracket, begun where the chord crosses.
 #[inline(always)]
@@ -350,20 +431,15 @@ fn crossing<L: Lanes>(
         // As if all rose.
         *c = L::select(rises, *c, -*c);
     }
-    let half = L::from_f64(0.5);
-    let (mut low, mut high) = (between.from, between.to);
-    let chord = low + (high - low) * (between.at_from / (between.at_from - between.at_to));
-    let mut u = L::select(is_between(chord, low, high), chord, half * (low + high));
+    let mut bracket = Bracket { low: between.from, high: between.to };
+    let Between { from, to, at_from, at_to } = *between;
+    let chord = from + (to - from) * (at_from / (at_from - at_to));
+    let precision = L::from_f64(f64::from(precision));
+    let mut u = L::select(is_between(chord, from, to), chord, bracket.middle());
     let mut open = wanted;
     for _ in 0..MOST_ITERATIONS {
-        let (miss, slope) = (powers::value(&above, u), powers::slope(&above, u));
-        let beyond = L::ZERO.lt(miss);
-        high = L::select(beyond, u, high);
-        low = L::select(beyond, low, u);
-        let newton = u - miss / slope;
-        // NaN and infinity from a flat place fail the comparison and bisect.
-        let next = L::select(low.le(newton).and(newton.le(high)), newton, half * (low + high));
-        let moved = L::from_f64(f64::from(precision)).lt((next - u).abs());
+        let next = bracket.newton(&above, u);
+        let moved = precision.lt((next - u).abs());
         u = L::select(open, next, u);
         open = open.and(moved);
         if !open.any() {

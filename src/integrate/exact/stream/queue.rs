@@ -63,6 +63,12 @@ impl<const F: usize> Shown<F> {
         self.are_inner = true;
     }
 
+    /// Which lanes have cells, from a cell on.
+    #[inline(always)]
+    pub(super) fn are_cells<L: Lanes>(&self, first: usize) -> L::Mask {
+        (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(self.count as i32))
+    }
+
     /// The seats of the rays that pass as many cells as a register has lanes.
     #[inline(always)]
     pub(super) fn seats<L: Lanes>(&self, first: usize) -> L::Ints {
@@ -148,8 +154,8 @@ impl Ways {
 /// What the cells passed do to light, by slot.
 #[derive(Debug)]
 pub(super) struct Results {
-    pub(super) radiance: [[f32; CELLS]; 3],
-    pub(super) absorbed: [f32; CELLS],
+    /// Radiance in red, green and blue, and what is absorbed.
+    pub(super) light: [[f32; 4]; CELLS],
     /// Infinite where the cell must be integrated again.
     pub(super) error: [f32; CELLS],
     /// Variance of what the nodes of pieces miss; 0 where errors are proven.
@@ -160,16 +166,16 @@ pub(super) struct Results {
 
 impl Results {
     pub(super) fn new() -> Self {
-        Results {
-            radiance: [[0.0; CELLS]; 3],
-            absorbed: [0.0; CELLS],
-            error: [0.0; CELLS],
-            variance: [0.0; CELLS],
-            pieces: [0.0; CELLS],
-        }
+        Results { light: [[0.0; 4]; CELLS], error: [0.0; CELLS], variance: [0.0; CELLS], pieces: [0.0; CELLS] }
     }
 
-    /// Sets those of some lanes' cells, which are in these slots.
+    /// From a slot on, the chosen cells will have one piece each.
+    #[inline(always)]
+    pub(super) fn expect<L: Lanes>(&mut self, slot: usize, chosen: L::Mask) {
+        L::select(chosen, L::ONE, L::ZERO).store(&mut self.pieces[slot..]);
+    }
+
+    /// Sets those of some lanes' cells, which are in these slots. How many pieces they have has been said where it is not given.
     #[inline(always)]
     pub(super) fn put<L: Lanes>(
         &mut self,
@@ -177,31 +183,33 @@ impl Results {
         slots: &[i32],
         integral: &Integral<L>,
         variance: Option<L>,
-        pieces: L,
+        pieces: Option<L>,
     ) {
-        let mut numbers = [[0.0; BATCH]; 7];
         let [r, g, b] = integral.radiance;
+        let mut light = [[0.0; 4]; BATCH];
         // Summed over pieces, it may be more by a rounding.
-        let absorbed = integral.absorbed.min(L::ONE);
-        for (row, x) in numbers.iter_mut().zip([r, g, b, absorbed, integral.error, pieces]) {
-            x.store(row);
-        }
+        L::store_vectors([r, g, b, integral.absorbed.min(L::ONE)], &mut light);
+        let mut error = [0.0; BATCH];
+        integral.error.store(&mut error);
+        let (mut variances, mut counts) = ([0.0; BATCH], [0.0; BATCH]);
         if let Some(variance) = variance {
-            variance.store(&mut numbers[6]);
+            variance.store(&mut variances);
+        }
+        if let Some(pieces) = pieces {
+            pieces.store(&mut counts);
         }
         let mut left = lanes.bits();
         while left != 0 {
             let k = left.trailing_zeros() as usize % BATCH;
             left &= left - 1;
             let slot = slots[k] as usize % CELLS;
-            self.radiance[0][slot] = numbers[0][k];
-            self.radiance[1][slot] = numbers[1][k];
-            self.radiance[2][slot] = numbers[2][k];
-            self.absorbed[slot] = numbers[3][k];
-            self.error[slot] = numbers[4][k];
-            self.pieces[slot] = numbers[5][k];
+            self.light[slot] = light[k];
+            self.error[slot] = error[k];
             if variance.is_some() {
-                self.variance[slot] = numbers[6][k];
+                self.variance[slot] = variances[k];
+            }
+            if pieces.is_some() {
+                self.pieces[slot] = counts[k];
             }
         }
     }

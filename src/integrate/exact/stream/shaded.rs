@@ -153,7 +153,7 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
     results: &mut Results,
 ) {
     for first in (0..shown.count).step_by(L::LANES) {
-        let is_cell = (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(shown.count as i32));
+        let is_cell = shown.are_cells::<L>(first);
         let fields = load_fields::<L, F>(shown, first);
         let mut interval = [L::Ints::splat(0); F];
         for f in 0..F {
@@ -190,7 +190,7 @@ pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
             missed = L::select(refused, L::ZERO, missed);
             integral.error = L::select(refused, L::ZERO, integral.error);
         }
-        put(results, shown, first, &integral, Some(missed * missed), L::ONE);
+        put(results, shown, first, &integral, Some(missed * missed), None);
     }
 }
 
@@ -316,7 +316,7 @@ pub(super) fn halved<L: Lanes, V: Voxel + Pairs, const F: usize>(
             for (k, &slot) in parts.slots(first, L::LANES).iter().enumerate() {
                 let slot = slot as usize;
                 for c in 0..3 {
-                    results.radiance[c][slot] += lanes[c][k];
+                    results.light[slot][c] += lanes[c][k];
                 }
                 results.variance[slot] += lanes[3][k];
                 results.error[slot] += lanes[4][k];

@@ -41,58 +41,58 @@ const NUDGE: f64 = 1e-9;
 /// is no cell.
 const INSIDE: f64 = 1.0 - 4.0 * f32::EPSILON as f64;
 
-/// Rays inside a volume, one per seat. Cells, faces and places along an axis are those of the rising ray.
+/// Rays inside a volume, one for each of `N` seats. Cells, faces and places along an axis are those of the rising ray.
 #[derive(Debug)]
-pub(super) struct Walks {
+pub(super) struct Walks<const N: usize = RAYS> {
     /// Entry as a continuous index, a [`NUDGE`] on where it moves, and voxels per mm.
-    entry: [[f64; RAYS]; 3],
-    per_mm: [[f64; RAYS]; 3],
+    entry: [[f64; N]; 3],
+    per_mm: [[f64; N]; 3],
     /// mm per voxel, and where each would cross face 0 across each axis, mm; 0 and [`NEVER_MM`] where it does not move.
-    mm_per: [[f64; RAYS]; 3],
-    face_zero_mm: [[f64; RAYS]; 3],
+    mm_per: [[f64; N]; 3],
+    face_zero_mm: [[f64; N]; 3],
     /// The coordinate in a cell of the lattice, in `[0, 1]`, where it is left through the next face, and what it is less per mm
     /// before that.
-    leaves_at: [[f32; RAYS]; 3],
-    less_per_mm: [[f32; RAYS]; 3],
+    leaves_at: [[f32; N]; 3],
+    less_per_mm: [[f32; N]; 3],
     /// -1 where a ray falls, 0 where it rises.
-    falls: [[i32; RAYS]; 3],
+    falls: [[i32; N]; 3],
     /// The last cell before the border.
-    last_cell: [[i32; RAYS]; 3],
+    last_cell: [[i32; N]; 3],
     /// From a cell to the next in memory.
-    strides: [[i32; RAYS]; 3],
+    strides: [[i32; N]; 3],
     /// Length inside the volume.
-    exit_mm: [f64; RAYS],
+    exit_mm: [f64; N],
     /// 1 over that, 1/mm.
-    per_length_mm: [f64; RAYS],
+    per_length_mm: [f64; N],
     /// How far each has come.
-    at_mm: [f64; RAYS],
+    at_mm: [f64; N],
     /// How far each had come a round before.
-    settled_mm: [f64; RAYS],
-    cell: [[i32; RAYS]; 3],
+    settled_mm: [f64; N],
+    cell: [[i32; N]; 3],
     /// Place in memory of the cell's lower corner.
-    base: [i32; RAYS],
+    base: [i32; N],
     dims: [i32; 3],
 }
 
-impl Walks {
+impl<const N: usize> Walks<N> {
     /// Nobody in a lattice of `dims` voxels.
     pub(super) fn new(dims: [usize; 3]) -> Self {
         Walks {
-            entry: [[0.0; RAYS]; 3],
-            per_mm: [[0.0; RAYS]; 3],
-            mm_per: [[0.0; RAYS]; 3],
-            face_zero_mm: [[0.0; RAYS]; 3],
-            leaves_at: [[0.0; RAYS]; 3],
-            less_per_mm: [[0.0; RAYS]; 3],
-            falls: [[0; RAYS]; 3],
-            last_cell: [[0; RAYS]; 3],
-            strides: [[0; RAYS]; 3],
-            exit_mm: [0.0; RAYS],
-            per_length_mm: [0.0; RAYS],
-            at_mm: [0.0; RAYS],
-            settled_mm: [0.0; RAYS],
-            cell: [[0; RAYS]; 3],
-            base: [0; RAYS],
+            entry: [[0.0; N]; 3],
+            per_mm: [[0.0; N]; 3],
+            mm_per: [[0.0; N]; 3],
+            face_zero_mm: [[0.0; N]; 3],
+            leaves_at: [[0.0; N]; 3],
+            less_per_mm: [[0.0; N]; 3],
+            falls: [[0; N]; 3],
+            last_cell: [[0; N]; 3],
+            strides: [[0; N]; 3],
+            exit_mm: [0.0; N],
+            per_length_mm: [0.0; N],
+            at_mm: [0.0; N],
+            settled_mm: [0.0; N],
+            cell: [[0; N]; 3],
+            base: [0; N],
             dims: dims.map(|n| n as i32),
         }
     }
@@ -139,9 +139,35 @@ impl Walks {
         self.per_length_mm[seat] = 1.0 / exit_mm;
     }
 
+    /// Seats a ray where it is among others.
+    #[inline(always)]
+    pub(super) fn take<const M: usize>(&mut self, seat: usize, others: &Walks<M>, from: usize) {
+        for a in 0..3 {
+            self.entry[a][seat] = others.entry[a][from];
+            self.per_mm[a][seat] = others.per_mm[a][from];
+            self.mm_per[a][seat] = others.mm_per[a][from];
+            self.face_zero_mm[a][seat] = others.face_zero_mm[a][from];
+            self.leaves_at[a][seat] = others.leaves_at[a][from];
+            self.less_per_mm[a][seat] = others.less_per_mm[a][from];
+            self.falls[a][seat] = others.falls[a][from];
+            self.last_cell[a][seat] = others.last_cell[a][from];
+            self.strides[a][seat] = others.strides[a][from];
+            self.cell[a][seat] = others.cell[a][from];
+        }
+        self.exit_mm[seat] = others.exit_mm[from];
+        self.per_length_mm[seat] = others.per_length_mm[from];
+        self.at_mm[seat] = others.at_mm[from];
+        self.base[seat] = others.base[from];
+    }
+
     /// Frees a seat.
     pub(super) fn leave(&mut self, seat: usize) {
         self.at_mm[seat] = self.exit_mm[seat];
+    }
+
+    /// Whether a ray has left the volume.
+    pub(super) fn is_over(&self, seat: usize) -> bool {
+        self.exit_mm[seat] <= self.at_mm[seat]
     }
 
     /// Which rays have left the volume, from a seat on.
@@ -151,12 +177,12 @@ impl Walks {
     }
 
     /// Lengths inside the volume, mm.
-    pub(super) fn lengths_mm(&self) -> &[f64; RAYS] {
+    pub(super) fn lengths_mm(&self) -> &[f64; N] {
         &self.exit_mm
     }
 
     /// 1 over the lengths inside the volume, 1/mm.
-    pub(super) fn per_lengths_mm(&self) -> &[f64; RAYS] {
+    pub(super) fn per_lengths_mm(&self) -> &[f64; N] {
         &self.per_length_mm
     }
 
@@ -210,6 +236,27 @@ impl Walks {
         }
     }
 
+    /// Lets all rays leap as long as nothing shows.
+    #[inline(always)]
+    pub(super) fn leap<L: Lanes>(&mut self, occupancy: &Occupancy) {
+        for first in (0..N).step_by(L::LANES) {
+            let lines = Lines::<L>::load(self, first);
+            let mut at = Cells::<L>::load(self, first);
+            let mut leapt = at.from_mm.lt(at.from_mm);
+            loop {
+                let leaps = lines.leap(&mut at, occupancy, <L::Mask as Mask>::ALL);
+                if !leaps.any() {
+                    break;
+                }
+                leapt = leapt.or(leaps);
+            }
+            if leapt.any() {
+                lines.land(&mut at, leapt);
+                at.store(self, first);
+            }
+        }
+    }
+
     /// Walks all rays on by a round. `pass` is given what the rays of some lanes pass at several steps, and the slot of the first
     /// ray at the first step: that of a ray at a step is its seat, plus the number of seats times the step.
     #[inline(always)]
@@ -219,7 +266,7 @@ impl Walks {
         mut pass: impl FnMut(&Lines<L>, &[Cells<L>; AHEAD], usize),
     ) {
         self.settled_mm = self.at_mm;
-        for first in (0..RAYS).step_by(L::LANES) {
+        for first in (0..N).step_by(L::LANES) {
             let lines = Lines::<L>::load(self, first);
             let mut at = Cells::<L>::load(self, first);
             let mut cells = [at; AHEAD];
@@ -232,7 +279,7 @@ impl Walks {
                     *passed = at;
                     lines.go_on(&mut at);
                 }
-                pass(&lines, &cells, first + n * RAYS);
+                pass(&lines, &cells, first + n * N);
                 if !at.from_mm.lt(at.rest_mm).any() {
                     break;
                 }
@@ -262,7 +309,7 @@ pub(super) struct Cells<L: Lanes> {
 
 impl<L: Lanes> Cells<L> {
     #[inline(always)]
-    fn load(walks: &Walks, first: usize) -> Self {
+    fn load<const N: usize>(walks: &Walks<N>, first: usize) -> Self {
         let nothing = L::Ints::splat(0);
         let mut cells = Cells {
             rising: [nothing; 3],
@@ -281,7 +328,7 @@ impl<L: Lanes> Cells<L> {
     }
 
     #[inline(always)]
-    fn store(&self, walks: &mut Walks, first: usize) {
+    fn store<const N: usize>(&self, walks: &mut Walks<N>, first: usize) {
         self.origin_mm.store(&mut walks.at_mm[first..]);
         self.base.store(&mut walks.base[first..]);
         for a in 0..3 {
@@ -313,7 +360,7 @@ pub(super) struct Lines<L: Lanes> {
 
 impl<L: Lanes> Lines<L> {
     #[inline(always)]
-    fn load(walks: &Walks, first: usize) -> Self {
+    fn load<const N: usize>(walks: &Walks<N>, first: usize) -> Self {
         let (zero, nothing) = (L::Doubles::splat(0.0), L::Ints::splat(0));
         let none = nothing.lt(nothing);
         let mut lines = Lines {
@@ -416,7 +463,7 @@ impl<L: Lanes> Lines<L> {
         let rest_mm = (self.exit_mm - leaves_mm) * L::Doubles::splat(INSIDE);
         at.rest_mm = L::select(leaps, L::from_doubles(rest_mm), at.rest_mm);
         for a in 0..3 {
-            let place = self.entry[a] + leaves_mm * self.per_mm[a];
+            let place = leaves_mm.mul_plus(self.per_mm[a], self.entry[a]);
             let cell = place.floor().to_ints().min(self.last_cell[a]);
             at.rising[a] = L::Ints::select(leaps, cell, at.rising[a]);
         }
@@ -466,6 +513,6 @@ impl<L: Lanes> Lines<L> {
     /// Where rays cross a face across an axis, mm from where they entered the volume.
     #[inline(always)]
     fn crossing_mm(&self, a: usize, face: L::Ints) -> L::Doubles {
-        self.face_zero_mm[a] + L::Doubles::from_ints(face) * self.mm_per[a]
+        L::Doubles::from_ints(face).mul_plus(self.mm_per[a], self.face_zero_mm[a])
     }
 }
