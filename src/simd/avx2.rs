@@ -367,11 +367,6 @@ impl Doubles for F64x8 {
         F64x8(unsafe { [_mm256_fmadd_pd(p, a, b), _mm256_fmadd_pd(q, c, d)] })
     }
     #[inline(always)]
-    fn minus_product(self, a: Self, b: Self) -> Self {
-        let ([p, q], [a, c], [b, d]) = (self.0, a.0, b.0);
-        F64x8(unsafe { [_mm256_fnmadd_pd(a, b, p), _mm256_fnmadd_pd(c, d, q)] })
-    }
-    #[inline(always)]
     fn min(self, other: Self) -> Self {
         let ([a, b], [c, d]) = (self.0, other.0);
         F64x8(unsafe { [_mm256_min_pd(c, a), _mm256_min_pd(d, b)] })

@@ -169,8 +169,6 @@ pub(crate) trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<O
     fn floor(self) -> Self;
     /// `self · a + b`, rounded once.
     fn mul_plus(self, a: Self, b: Self) -> Self;
-    /// `self − a · b`, rounded once.
-    fn minus_product(self, a: Self, b: Self) -> Self;
     /// The smaller one.
     fn min(self, other: Self) -> Self;
     /// The larger one.

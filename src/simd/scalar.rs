@@ -150,10 +150,6 @@ impl Doubles for f64 {
         f64::mul_add(self, a, b)
     }
     #[inline(always)]
-    fn minus_product(self, a: Self, b: Self) -> Self {
-        f64::mul_add(-a, b, self)
-    }
-    #[inline(always)]
     fn min(self, other: Self) -> Self {
         if other < self { other } else { self }
     }

@@ -77,6 +77,7 @@ impl Kernel for Everything {
                 L::from_doubles(d - e),
                 L::from_doubles(x.to_doubles() * y.to_doubles()),
                 L::from_doubles(d.floor() + e),
+                L::from_doubles(d.mul_plus(e, d)),
                 L::from_doubles(d.min(e)),
                 L::from_doubles(d.max(e)),
                 L::from_doubles(L::Doubles::select(d.lt(e), d * e, e)),

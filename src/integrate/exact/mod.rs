@@ -241,11 +241,11 @@ fn for_samples<'a, V: Voxel + Pairs>(
         return match baked {
             (Baked::OneD(double), Baked::OneD(other)) => {
                 let double = Classified { lattice, classifier: double };
-                of.stream("tf1d", bound, voxels, OfValue::new(&other), &other, double)
+                of.stream("tf1d", bound, voxels, OfValue::new(&other, tolerance), &other, double)
             }
             (Baked::TwoD(double), Baked::TwoD(other)) => {
                 let double = Classified { lattice, classifier: double };
-                of.stream("tf2d", bound, voxels, OfValueAndMagnitude::new(&other), &other, double)
+                of.stream("tf2d", bound, voxels, OfValueAndMagnitude::new(&other, tolerance), &other, double)
             }
             _ => unreachable!("both precisions bake the same transfer function"),
         };

@@ -59,11 +59,6 @@ impl Doubles for F64x16 {
         F64x16(unsafe { [_mm512_fmadd_pd(p, a, b), _mm512_fmadd_pd(q, c, d)] })
     }
     #[inline(always)]
-    fn minus_product(self, a: Self, b: Self) -> Self {
-        let ([p, q], [a, c], [b, d]) = (self.0, a.0, b.0);
-        F64x16(unsafe { [_mm512_fnmadd_pd(a, b, p), _mm512_fnmadd_pd(c, d, q)] })
-    }
-    #[inline(always)]
     fn min(self, other: Self) -> Self {
         let ([a, b], [c, d]) = (self.0, other.0);
         F64x16(unsafe { [_mm512_min_pd(c, a), _mm512_min_pd(d, b)] })

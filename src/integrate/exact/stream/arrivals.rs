@@ -3,7 +3,7 @@
 //! Most leaps are made before a ray first comes to anything, and many rays never do. Made side by side by rays that all have to, they
 //! hold up nobody who has cells to pass.
 
-use super::walk::Walks;
+use super::seats::Walks;
 use crate::field::Chords;
 use crate::integrate::occupancy::Occupancy;
 use crate::scene::Rays;

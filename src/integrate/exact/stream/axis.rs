@@ -1,5 +1,6 @@
 //! The knots of a transfer function along one axis, for lanes.
 
+use super::levels::precision;
 use crate::classify;
 use crate::simd::{Ints, Lanes, Table};
 
@@ -20,19 +21,24 @@ pub(in crate::integrate::exact) struct Axis {
     anchors: Table,
     /// 1 where the function jumps, or all but jumps, at an interval's lower end.
     steep: Option<Table>,
+    /// How long the last step of the search for where a knot is crossed may be.
+    precision: f32,
 }
 
 impl Axis {
-    pub(super) fn new(axis: &classify::Axis<f32>) -> Self {
+    /// For pictures within a tolerance.
+    pub(super) fn new(axis: &classify::Axis<f32>, tolerance: f64) -> Self {
         let knots = axis.knots().to_vec();
         let ends: Vec<f32> = [&[-FAR], knots.as_slice(), &[FAR]].concat();
         let anchors: Vec<f32> = [&knots[..1], knots.as_slice()].concat();
         let is_steep = |end: usize| 0 < end && end <= knots.len() && axis.is_steep(end - 1);
         let steep: Vec<f32> = (0..ends.len()).map(|end| f32::from(u8::from(is_steep(end)))).collect();
+        let jumps = steep.contains(&1.0);
         Axis {
             ends: Table::new(&ends),
             anchors: Table::new(&anchors),
-            steep: steep.contains(&1.0).then(|| Table::new(&steep)),
+            steep: jumps.then(|| Table::new(&steep)),
+            precision: precision(jumps, tolerance),
             knots,
         }
     }
@@ -44,6 +50,7 @@ impl Axis {
             ends: Table::new(&[-FAR, knot, FAR]),
             anchors: Table::new(&[knot, knot]),
             steep: None,
+            precision: 1.0 / 128.0,
         }
     }
 
@@ -129,6 +136,12 @@ impl Axis {
     #[inline(always)]
     pub(super) fn anchor<L: Lanes>(&self, interval: L::Ints) -> L {
         L::pick(&self.anchors, interval)
+    }
+
+    /// How long the last step of the search for where a knot is crossed may be.
+    #[inline(always)]
+    pub(super) fn precision(&self) -> f32 {
+        self.precision
     }
 
     /// Which ends are steep; `None` if there are none.

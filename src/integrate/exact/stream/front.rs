@@ -1,7 +1,8 @@
 //! Rays in flight: what reaches the eye so far, and what cells add to it.
 
 use super::queue::{Passed, Results};
-use super::walk::{RAYS, STEPS, Walks};
+use super::seats::Walks;
+use super::walk::{RAYS, STEPS};
 use crate::integrate::exact::budget::Budget;
 use crate::integrate::exact::ray::{Brightest, Frame, Front, Traced};
 use crate::simd::{Doubles, Ints, Lanes, Mask};

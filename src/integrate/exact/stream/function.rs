@@ -61,8 +61,9 @@ pub(in crate::integrate::exact) struct OfValue {
 }
 
 impl OfValue {
-    pub(in crate::integrate::exact) fn new(function: &OneD<f32>) -> Self {
-        let axis = Axis::new(function.axis());
+    /// For pictures within a tolerance.
+    pub(in crate::integrate::exact) fn new(function: &OneD<f32>, tolerance: f64) -> Self {
+        let axis = Axis::new(function.axis(), tolerance);
         let knots = function.axis().knots();
         let last = knots.len() - 2;
         // Beyond the ends the function is constant.
@@ -179,8 +180,10 @@ pub(in crate::integrate::exact) struct OfValueAndMagnitude {
 }
 
 impl OfValueAndMagnitude {
-    pub(in crate::integrate::exact) fn new(function: &TwoD<f32>) -> Self {
-        let (values, magnitudes) = (Axis::new(function.values()), Axis::new(function.gradients()));
+    /// For pictures within a tolerance.
+    pub(in crate::integrate::exact) fn new(function: &TwoD<f32>, tolerance: f64) -> Self {
+        let axes = [function.values(), function.gradients()];
+        let [values, magnitudes] = axes.map(|axis| Axis::new(axis, tolerance));
         let (nv, ng) = (values.intervals(), magnitudes.intervals());
         // Beyond the ends of an axis the function is constant along it: how far from the inner patch's lower end it is read.
         let outside = |axis: &crate::classify::Axis<f32>, i: usize| {

@@ -1,11 +1,12 @@
 //! The fast kernel: many cells of many rays side by side, in vector registers.
 //!
-//! What a cell does to light does not depend on the light that reaches it. So rays are worked off in rounds of a few hundred
-//! cells, in four steps: rays `walk`, a lane each, leaping over blocks in which nothing shows, and `look` reads the corners of the
-//! cells that they pass, drops those in which nothing shows and makes the cubics of the others, without gaps between them;
-//! `pieces`, or `shaded` where there is light, cuts those at the knots and integrates; and `front` composites the results front
-//! to back, again a ray per lane, within each ray's budget. A cell whose proven error is more than the budget allows, or whose
-//! cuts rounding might have misplaced, is integrated again in f64 by the twin of this kernel.
+//! What a cell does to light does not depend on the light that reaches it. So rays, which take a seat once they have come to where
+//! something may show (`arrivals`), are worked off in rounds of a few hundred cells, in four steps. They `walk`, a lane each, leaping
+//! over blocks in which nothing shows; `look` reads the corners of the cells that they pass, drops those in which nothing shows
+//! and makes the cubics of the others, without gaps between them; `pieces`, or `shaded` where there is light, cuts those at the
+//! knots, and where one piece would miss too much, and integrates; and `front` composites the results front to back, again a
+//! ray per lane, within each ray's budget. A cell whose proven error is still more than the budget allows, or whose cuts rounding
+//! might have misplaced, is integrated again in f64 by the twin of this kernel.
 //!
 //! A lane does the same whatever its neighbours do, and the same at each level, so a picture has the same bits on every
 //! processor, for any number of threads and any order of tiles.
@@ -15,6 +16,7 @@ mod axis;
 mod crossing;
 mod front;
 mod function;
+mod levels;
 mod light;
 mod lit;
 mod look;
@@ -22,6 +24,7 @@ mod nodes;
 mod parts;
 mod pieces;
 mod queue;
+mod seats;
 mod shaded;
 mod shares;
 mod voxels;
@@ -51,7 +54,8 @@ use light::Seen;
 use lit::{Allowance, Scenery, lit};
 use look::look;
 use queue::{Passed, ROOM, Results, Shown};
-use walk::{AHEAD, RAYS, Walks};
+use seats::Walks;
+use walk::{AHEAD, RAYS};
 
 pub(super) use function::{Function, OfValue, OfValueAndMagnitude};
 pub(super) use light::Lighting;

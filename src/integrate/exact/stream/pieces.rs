@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::crossing::{Beginnings, Crossing, Taken};
 use super::function::Function;
+use super::levels::{Between, critical_points, crossing};
 use super::light::AsItIs;
 use super::look::ROUNDINGS;
 use super::queue::{Results, Shown};
@@ -12,17 +13,8 @@ use crate::math::each;
 use crate::math::powers::{self, Powers};
 use crate::simd::{Ints, Lanes, Mask, Table};
 
-/// Iterations after which a crossing is not sought any further; bisection alone would be done by then.
-const MOST_ITERATIONS: usize = 40;
-
 /// A piece is not made shorter than this fraction of a cell; what it then costs the ray's budget may refuse.
 const SMALLEST_PIECE: f64 = 1.0 / 256.0;
-
-/// The last step of an iteration for a crossing is at most so long. Newton's iteration then doubles the digits once more.
-/// Where the function does not jump, a cut that is off by `u` of a cell's length changes light by the square of `u` times what
-/// the function changes by along the cell.
-const PRECISE: f32 = 0.5 * f32::EPSILON;
-const ENOUGH: f32 = 1.0 / 32.0;
 
 /// What the error of a piece may be: a share of what it absorbs, and one of its length.
 #[derive(Debug, Clone, Copy)]
@@ -312,10 +304,9 @@ impl<L: Lanes> Run<L> {
         let crosses = crosses.and(from.lt(L::ONE));
         let mut to = turn;
         if crosses.any() {
-            // Where the function does not jump, a cut that is a little off changes next to nothing.
-            let precision = if axis.steep().is_some() { PRECISE } else { ENOUGH };
             let between = Between { from, to: turn, at_from: self.at - level, at_to: there - level };
-            to = L::select(crosses, crossing(&self.powers, level, rises, crosses, &between, precision), turn);
+            let found = crossing(&self.powers, level, rises, crosses, &between, axis.precision());
+            to = L::select(crosses, found, turn);
         }
         Next { to, value: L::select(crosses, level, there), crosses, rises, end }
     }
@@ -351,100 +342,7 @@ impl<L: Lanes> Run<L> {
     }
 }
 
-/// Where in `(0, 1)` the derivative vanishes, ascending; 1 where it does not.
-#[inline(always)]
-fn critical_points<L: Lanes>(b: &Cubic<L>) -> [L; 2] {
-    let (d0, d1, d2) = (b[1] - b[0], b[2] - b[1], b[3] - b[2]);
-    // d(u) = d0 (1−u)² + 2 d1 u (1−u) + d2 u²  =  a u² + 2 h u + d0.
-    let a = (d0 - d1) + (d2 - d1);
-    let h = d1 - d0;
-    let discriminant = (h * h).minus_product(a, d0);
-    let root = discriminant.max(L::ZERO).sqrt();
-    // The stable pair of roots: no difference of nearly equal numbers.
-    let q = -(h + L::select(h.lt(L::ZERO), -root, root));
-    // NaN from 0 / 0 compares as outside.
-    let mut found = [d0 / q, q / a];
-    for u in &mut found {
-        let counts = is_between(*u, L::ZERO, L::ONE).and(L::ZERO.lt(discriminant));
-        *u = L::select(counts, *u, L::ONE);
-    }
-    [found[0].min(found[1]), found[0].max(found[1])]
-}
-
-#[inline(always)]
-fn is_between<L: Lanes>(u: L, low: L, high: L) -> L::Mask {
-    low.lt(u).and(u.lt(high))
-}
-
 #[inline(always)]
 fn is_steep<L: Lanes>(steep: &Table, end: L::Ints) -> L::Mask {
     L::ZERO.lt(L::pick(steep, end))
-}
-
-/// A stretch on which a cubic is monotone, and what it has above a level at the ends.
-struct Between<L> {
-    from: L,
-    to: L,
-    at_from: L,
-    at_to: L,
-}
-
-/// Where rising cubics take 0, as far as is known.
-struct Bracket<L> {
-    low: L,
-    high: L,
-}
-
-impl<L: Lanes> Bracket<L> {
-    #[inline(always)]
-    fn middle(&self) -> L {
-        L::from_f64(0.5) * (self.low + self.high)
-    }
-
-    /// A step of Newton's iteration, kept inside.
-    #[inline(always)]
-    fn newton(&mut self, cubic: &Powers<L>, u: L) -> L {
-        let (miss, slope) = (powers::value(cubic, u), powers::slope(cubic, u));
-        let beyond = L::ZERO.lt(miss);
-        self.high = L::select(beyond, u, self.high);
-        self.low = L::select(beyond, self.low, u);
-        let next = u - miss / slope;
-        // NaN and infinity from a flat place fail the comparison and bisect.
-        L::select(self.low.le(next).and(next.le(self.high)), next, self.middle())
-    }
-}
-
-/// Where monotone cubics take a level that lies between their values at the ends. Newton's iteration kept inside a shrinking
-/// bracket, begun where the chord crosses.
-#[inline(always)]
-fn crossing<L: Lanes>(
-    powers: &Powers<L>,
-    level: L,
-    rises: L::Mask,
-    wanted: L::Mask,
-    between: &Between<L>,
-    precision: f32,
-) -> L {
-    let [c0, c1, c2, c3] = *powers;
-    let mut above = [c0 - level, c1, c2, c3];
-    for c in &mut above {
-        // As if all rose.
-        *c = L::select(rises, *c, -*c);
-    }
-    let mut bracket = Bracket { low: between.from, high: between.to };
-    let Between { from, to, at_from, at_to } = *between;
-    let chord = from + (to - from) * (at_from / (at_from - at_to));
-    let precision = L::from_f64(f64::from(precision));
-    let mut u = L::select(is_between(chord, from, to), chord, bracket.middle());
-    let mut open = wanted;
-    for _ in 0..MOST_ITERATIONS {
-        let next = bracket.newton(&above, u);
-        let moved = precision.lt((next - u).abs());
-        u = L::select(open, next, u);
-        open = open.and(moved);
-        if !open.any() {
-            break;
-        }
-    }
-    u
 }
