@@ -1,14 +1,18 @@
 //! Eight lanes: AVX2.
 #![expect(unsafe_code, reason = "intrinsics; the module's rules say why they are safe")]
 
+mod doubles;
+mod memory;
+
 use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::lanes::{attenuation, last, last_pair, last_quad, last_word};
-use super::register::{arithmetic, operators};
-use super::{BATCH, Doubles, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
+use super::register::arithmetic;
+use super::{BATCH, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
 use crate::math::Number;
+use memory::{load_vectors, store_vectors};
 
 /// Runs a kernel compiled for these instructions.
 ///
@@ -147,39 +151,12 @@ impl Lanes for F32x8 {
         F32x8(unsafe { _mm256_i32gather_ps::<4>(from.as_ptr(), clamped(at, last(from))) })
     }
     #[inline(always)]
-    fn store_vectors([x, y, z, w]: [Self; 4], to: &mut [[f32; 4]; BATCH]) {
-        unsafe {
-            let (xy, xy_next) = (_mm256_unpacklo_ps(x.0, y.0), _mm256_unpackhi_ps(x.0, y.0));
-            let (zw, zw_next) = (_mm256_unpacklo_ps(z.0, w.0), _mm256_unpackhi_ps(z.0, w.0));
-            // The k-th vector of each half.
-            let vectors = [
-                _mm256_shuffle_ps::<0b01_00_01_00>(xy, zw),
-                _mm256_shuffle_ps::<0b11_10_11_10>(xy, zw),
-                _mm256_shuffle_ps::<0b01_00_01_00>(xy_next, zw_next),
-                _mm256_shuffle_ps::<0b11_10_11_10>(xy_next, zw_next),
-            ];
-            for (k, both) in vectors.into_iter().enumerate() {
-                _mm_storeu_ps(to[k].as_mut_ptr(), _mm256_castps256_ps128(both));
-                _mm_storeu_ps(to[k + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(both));
-            }
-        }
+    fn store_vectors(numbers: [Self; 4], to: &mut [[f32; 4]; BATCH]) {
+        store_vectors(numbers, to);
     }
     #[inline(always)]
     fn load_vectors(from: &[[f32; 4]]) -> [Self; 4] {
-        let from = &from[..8];
-        unsafe {
-            // The k-th vector of each half.
-            let both = |k: usize| _mm256_set_m128(_mm_loadu_ps(from[k + 4].as_ptr()), _mm_loadu_ps(from[k].as_ptr()));
-            let (a, b, c, d) = (both(0), both(1), both(2), both(3));
-            let (xy, zw) = (_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
-            let (xy_next, zw_next) = (_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d));
-            [
-                F32x8(_mm256_shuffle_ps::<0b01_00_01_00>(xy, xy_next)),
-                F32x8(_mm256_shuffle_ps::<0b11_10_11_10>(xy, xy_next)),
-                F32x8(_mm256_shuffle_ps::<0b01_00_01_00>(zw, zw_next)),
-                F32x8(_mm256_shuffle_ps::<0b11_10_11_10>(zw, zw_next)),
-            ]
-        }
+        load_vectors(from)
     }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
@@ -296,102 +273,6 @@ impl Lanes for F32x8 {
             // Bit 3 of the number, moved to the sign, chooses the register.
             F32x8(_mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32::<28>(at.0))))
         }
-    }
-}
-
-operators!(F64x8, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd);
-
-impl F64x8 {
-    /// The truths of two registers of four.
-    #[inline(always)]
-    fn joined(low: __m256d, high: __m256d) -> Mask8 {
-        Mask8(unsafe {
-            // The lower half of each truth, in an order that the next instruction mends.
-            let mixed = _mm256_shuffle_ps::<0b10_00_10_00>(_mm256_castpd_ps(low), _mm256_castpd_ps(high));
-            _mm256_castpd_ps(_mm256_permute4x64_pd::<0b11_01_10_00>(_mm256_castps_pd(mixed)))
-        })
-    }
-
-    /// Truths for two registers of four.
-    #[inline(always)]
-    fn split(mask: Mask8) -> [__m256d; 2] {
-        unsafe {
-            let ints = _mm256_castps_si256(mask.0);
-            let (low, high) = (_mm256_castsi256_si128(ints), _mm256_extracti128_si256::<1>(ints));
-            [_mm256_castsi256_pd(_mm256_cvtepi32_epi64(low)), _mm256_castsi256_pd(_mm256_cvtepi32_epi64(high))]
-        }
-    }
-}
-
-impl Doubles for F64x8 {
-    type Ints = I32x8;
-    type Mask = Mask8;
-
-    #[inline(always)]
-    fn splat(x: f64) -> Self {
-        F64x8(unsafe { [_mm256_set1_pd(x), _mm256_set1_pd(x)] })
-    }
-    #[inline(always)]
-    fn load(from: &[f64]) -> Self {
-        let (low, high) = from[..8].split_at(4);
-        F64x8(unsafe { [_mm256_loadu_pd(low.as_ptr()), _mm256_loadu_pd(high.as_ptr())] })
-    }
-    #[inline(always)]
-    fn store(self, to: &mut [f64]) {
-        let (low, high) = to[..8].split_at_mut(4);
-        unsafe {
-            _mm256_storeu_pd(low.as_mut_ptr(), self.0[0]);
-            _mm256_storeu_pd(high.as_mut_ptr(), self.0[1]);
-        }
-    }
-    #[inline(always)]
-    fn from_ints(ints: I32x8) -> Self {
-        F64x8(unsafe {
-            let (low, high) = (_mm256_castsi256_si128(ints.0), _mm256_extracti128_si256::<1>(ints.0));
-            [_mm256_cvtepi32_pd(low), _mm256_cvtepi32_pd(high)]
-        })
-    }
-    #[inline(always)]
-    fn to_ints(self) -> I32x8 {
-        let [low, high] = self.0;
-        I32x8(unsafe { _mm256_set_m128i(_mm256_cvttpd_epi32(high), _mm256_cvttpd_epi32(low)) })
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        let [low, high] = self.0;
-        F64x8(unsafe { [_mm256_floor_pd(low), _mm256_floor_pd(high)] })
-    }
-    #[inline(always)]
-    fn mul_plus(self, a: Self, b: Self) -> Self {
-        let ([p, q], [a, c], [b, d]) = (self.0, a.0, b.0);
-        F64x8(unsafe { [_mm256_fmadd_pd(p, a, b), _mm256_fmadd_pd(q, c, d)] })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        F64x8(unsafe { [_mm256_min_pd(c, a), _mm256_min_pd(d, b)] })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        F64x8(unsafe { [_mm256_max_pd(c, a), _mm256_max_pd(d, b)] })
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Mask8 {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        let (low, high) = unsafe { (_mm256_cmp_pd::<_CMP_LT_OQ>(a, c), _mm256_cmp_pd::<_CMP_LT_OQ>(b, d)) };
-        F64x8::joined(low, high)
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Mask8 {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        let (low, high) = unsafe { (_mm256_cmp_pd::<_CMP_LE_OQ>(a, c), _mm256_cmp_pd::<_CMP_LE_OQ>(b, d)) };
-        F64x8::joined(low, high)
-    }
-    #[inline(always)]
-    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
-        let ([a, b], [c, d], [low, high]) = (yes.0, no.0, F64x8::split(mask));
-        F64x8(unsafe { [_mm256_blendv_pd(c, a, low), _mm256_blendv_pd(d, b, high)] })
     }
 }
 

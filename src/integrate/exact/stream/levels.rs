@@ -11,10 +11,11 @@ const MOST_ITERATIONS: usize = 40;
 ///
 /// Where the function jumps, nothing but rounding is good enough. Elsewhere a cut that is off by `u` leaves a value off its knot by
 /// `u` times the slope, along `u` of the cell; half their product is at most 1.5 times the cube of the last step (the test below
-/// holds it to that), in units of what the value changes by along the cell. So a cut costs less than a hundredth of the tolerance.
+/// holds it to that), in units of what the value changes by along the cell. The function may be steep there: by a depth of 100, did
+/// the cell go on like that. So a cut is to cost a hundredth of the tolerance even then.
 pub(super) fn precision(jumps: bool, tolerance: f64) -> f32 {
     const COARSEST: f64 = 1.0 / 32.0;
-    if jumps { 0.5 * f32::EPSILON } else { (0.18 * tolerance.cbrt()).min(COARSEST) as f32 }
+    if jumps { 0.5 * f32::EPSILON } else { (0.04 * tolerance.cbrt()).min(COARSEST) as f32 }
 }
 
 /// Where in `(0, 1)` the derivative vanishes, ascending; 1 where it does not.
