@@ -115,6 +115,12 @@ impl Grid {
         })
     }
 
+    /// Length of the longest chord of the domain, mm: the longest of the four diagonals of a parallelepiped.
+    pub fn longest_chord_mm(&self) -> f64 {
+        let corners_mm = self.corners_mm();
+        (0..4).map(|c| corners_mm[c].distance(corners_mm[7 - c])).fold(0.0, f64::max)
+    }
+
     /// Centre of the domain, LPS mm.
     pub fn center_mm(&self) -> DVec3 {
         let (low, high) = self.index_bounds();
@@ -125,6 +131,12 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_longest_chord_is_the_longest_diagonal() {
+        let grid = Grid::axis_aligned([4, 5, 13], DVec3::ONE).unwrap();
+        assert_eq!(grid.longest_chord_mm(), 13.0);
+    }
 
     #[test]
     fn gradient_of_a_linear_field_is_its_coefficient_under_shear() {

@@ -75,10 +75,7 @@ pub(super) fn check(settings: &March, scene: &Scene, grid: &Grid) -> Result<()> 
             .found("emission per sample")
             .remedy("use emission: per-length, the default, or leave haze out"));
     }
-    // The longest chord of a parallelepiped is one of its four diagonals.
-    let corners = grid.corners_mm();
-    let longest_mm = (0..4).map(|c| corners[c].distance(corners[7 - c])).fold(0.0, f64::max);
-    let samples = longest_mm / step;
+    let samples = grid.longest_chord_mm() / step;
     if samples > MOST_SAMPLES_PER_RAY {
         return Err(Error::new(Fault::Limit, "the step is too small for the volume")
             .element("integrate.march.step")

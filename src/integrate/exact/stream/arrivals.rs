@@ -10,7 +10,7 @@ use crate::scene::Rays;
 use crate::simd::{BATCH, Lanes};
 use crate::volume::Grid;
 
-/// Rays of a tile, a few of which stand where something may show, or behind everything.
+/// Rays of a tile, a few of which have come to where something may show, or through the volume without.
 pub(super) struct Arrivals<'r> {
     grid: &'r Grid,
     chords: &'r Chords,

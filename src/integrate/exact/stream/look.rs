@@ -57,7 +57,8 @@ impl Fields<2> for Read {
 }
 
 /// Looks into the cells that rays pass at several steps, the first lane's slot at the first step being `first`. Those whose fields
-/// stay in one interval go to `whole`, those that may cross a knot to `cut`; `results` are told of the former. `corners` is room for samples.
+/// stay in one interval go to `whole`, and `results` are told of them; those that may cross a knot go to `cut`. `corners` is room
+/// for samples.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "what is read, what with, and where it goes")]
 pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(

@@ -177,10 +177,9 @@ where
         let harm_per_mm = stream.frame.harm_per_mm() as f32;
         let mut seen = Seen::new();
         let mut corners = [[L::ZERO; 8]; AHEAD];
-        let corners_mm = stream.grid.corners_mm();
-        let longest_mm = (0..4).map(|c| corners_mm[c].distance(corners_mm[7 - c])).fold(0.0, f64::max);
-        let allowed = pieces::Allowed::new(Budget::of_pieces(stream.frame.tolerance), longest_mm);
-        let mut allowance = Allowance::new(Budget::of_pieces(stream.frame.tolerance));
+        let shares = Budget::of_pieces(stream.frame.tolerance);
+        let allowed = pieces::Allowed::new(shares, stream.grid.longest_chord_mm());
+        let mut allowance = Allowance::new(shares);
         loop {
             // A bit for each seat.
             let mut free = fronts.ended::<L>(&walks);

@@ -50,9 +50,7 @@ pub(in super::super) struct Packets<'a, V, C, S> {
 
 /// Whether these settings ask for what packets do: front to back, one sample for an interval, and not too many of them.
 pub(in super::super) fn suits(settings: &March, grid: &Grid) -> bool {
-    let corners = grid.corners_mm();
-    let longest_mm = (0..4).map(|c| corners[c].distance(corners[7 - c])).fold(0.0, f64::max);
-    settings.is_plain() && longest_mm < pieces::MOST_SAMPLES * settings.step_mm
+    settings.is_plain() && grid.longest_chord_mm() < pieces::MOST_SAMPLES * settings.step_mm
 }
 
 /// What is kept between tiles.
