@@ -5,13 +5,16 @@ use rayon::prelude::*;
 use super::lanes::{Cells, trilinear};
 use super::macrocell::{BLOCK_CELLS, LOG2_BLOCK_CELLS, Macrocells};
 use super::{Cell, interpolate};
-use crate::simd::{Ints, Lanes, Pairs};
+use crate::simd::{Ints, Lanes, Pairs, Stencil};
 
 /// Voxels along the edge of a brick: its upper faces are kept with it, so that a cell lies in one brick.
 const EDGE: usize = BLOCK_CELLS + 1;
 
 /// Distances in a brick to the next voxel along each axis.
 const STRIDES: [usize; 3] = [1, EDGE, EDGE * EDGE];
+
+/// Where lanes read.
+const STENCIL: Stencil = Stencil::new(STRIDES[1], STRIDES[2]);
 
 /// Voxels of a brick.
 const VOXELS: usize = EDGE * EDGE * EDGE;
@@ -106,8 +109,7 @@ impl Bricks {
             inside = inside + corner.and(L::Ints::splat(BLOCK_CELLS as i32 - 1)) * L::Ints::splat(STRIDES[a] as i32);
         }
         let base = L::Ints::gather(&self.first, block) + inside;
-        let [_, down, back] = STRIDES.map(|stride| stride as i32);
-        trilinear(<i16 as Pairs>::pairs_around::<L, 4>(&self.kept, base, [0, down, back, down + back]), cells.fraction)
+        trilinear(i16::rises::<L, 4>(&self.kept, base, &STENCIL.edges), cells.fraction)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use glam::{Vec4, Vec4Swizzles};
+use glam::{DMat3, Vec4, Vec4Swizzles};
 
 use super::{Cell, Even, Spacing, Trilinear, Voxel};
 use crate::math::{Number, each};
@@ -91,18 +91,27 @@ fn lerp<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>>(a: T
 #[derive(Debug, Clone, Copy)]
 pub struct GradientUnits {
     rows: [[f32; 3]; 3],
+    /// Whether the axes of the grid are those of the patient.
+    is_diagonal: bool,
 }
 
 impl GradientUnits {
     /// The inverse transpose of the grid's affine, times the slope of the rescale.
     pub fn new(grid: &Grid, rescale: Rescale) -> Self {
         let matrix = (grid.gradient_to_per_mm() * rescale.slope).transpose();
-        GradientUnits { rows: matrix.to_cols_array_2d().map(|row| row.map(|x| x as f32)) }
+        GradientUnits {
+            rows: matrix.to_cols_array_2d().map(|row| row.map(|x| x as f32)),
+            is_diagonal: matrix == DMat3::from_diagonal(matrix.diagonal()),
+        }
     }
 
     /// HU/mm along the axes of the patient (LPS).
     #[inline(always)]
     pub fn per_mm<N: Number>(&self, [x, y, z]: [N; 3]) -> [N; 3] {
+        if self.is_diagonal {
+            let [a, b, c] = [self.rows[0][0], self.rows[1][1], self.rows[2][2]].map(f64::from);
+            return [N::from_f64(a) * x, N::from_f64(b) * y, N::from_f64(c) * z];
+        }
         let mut along = [N::ZERO; 3];
         for (along, row) in along.iter_mut().zip(&self.rows) {
             let (a, b, c) = (f64::from(row[0]), f64::from(row[1]), f64::from(row[2]));

@@ -2,8 +2,8 @@
 //! [`Trilinear::gradient_per_index`] are of one.
 
 use super::{Batch, Trilinear, Voxel};
-use crate::math::Number;
-use crate::simd::{Ints, Lanes, Mask, Pairs};
+use crate::math::{Number, each};
+use crate::simd::{Around, Away, Ints, Lanes, Mask, Pairs};
 
 /// The cells of some samples of a batch, on even slices.
 #[derive(Clone, Copy)]
@@ -15,10 +15,6 @@ pub(crate) struct Cells<L: Lanes> {
     /// Where in the cell.
     pub(super) fraction: [L; 3],
 }
-
-/// The samples `[i − 1, i, i + 1, i + 2]` of the four lines along i that hold a cell's corners `i` and `i + 1`, in the order
-/// `(j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1)`. On the border what would be outside is what is there.
-type Lines<L> = [[L; 4]; 4];
 
 /// The memory of which samples are read fits indices of 32 bits, and each line has a pair.
 const MOST_SAMPLES: usize = i32::MAX as usize;
@@ -75,13 +71,6 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
         inside
     }
 
-    /// Distances in memory of a cell's lines along i from its lower corner.
-    #[inline(always)]
-    fn lines_away(&self) -> [i32; 4] {
-        let [_, down, back] = self.strides.map(|stride| stride as i32);
-        [0, down, back, down + back]
-    }
-
     /// Distances in memory, of all lanes, to the next lines along j, along k, and along both.
     #[inline(always)]
     fn next_lines<L: Lanes>(&self) -> [L::Ints; 3] {
@@ -92,35 +81,24 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
     /// The interpolated stored samples.
     #[inline(always)]
     pub(crate) fn values<L: Lanes>(&self, cells: &Cells<L>) -> L {
-        trilinear(V::pairs_around::<L, 4>(self.voxels, cells.base, self.lines_away()), cells.fraction)
-    }
-
-    /// The lines through the cells, none of which is at the border.
-    #[inline(always)]
-    pub(crate) fn lines<L: Lanes>(&self, cells: &Cells<L>) -> Lines<L> {
-        V::quads_around::<L, 4>(self.voxels, cells.base - L::Ints::splat(1), self.lines_away())
+        trilinear(V::rises::<L, 4>(self.voxels, cells.base, &self.stencil.edges), cells.fraction)
     }
 
     /// A line through cells that may be at the border, this far in memory from their lower corners.
     #[inline(always)]
-    fn line_at_border<L: Lanes>(&self, cells: &Cells<L>, away: L::Ints) -> [L; 4] {
+    fn line_at_border<L: Lanes>(&self, cells: &Cells<L>, away: L::Ints) -> [V::Stored<L>; 4] {
         let (one, last) = (L::Ints::splat(1), L::Ints::splat(self.dims[0] as i32 - 2));
         let (at, i) = (cells.base + away, cells.corner[0]);
-        let [first, _] = V::pairs::<L>(self.voxels, at - i + (i.max(one) - one));
-        let [second, third] = V::pairs::<L>(self.voxels, at);
-        let [_, fourth] = V::pairs::<L>(self.voxels, at - i + (i + one).min(last));
+        let [[first, _]] = V::pairs::<L, 1>(self.voxels, at - i + (i.max(one) - one), &Away::HERE);
+        let [[second, third]] = V::pairs::<L, 1>(self.voxels, at, &Away::HERE);
+        let [[_, fourth]] = V::pairs::<L, 1>(self.voxels, at - i + (i + one).min(last), &Away::HERE);
         [first, second, third, fourth]
     }
 
-    /// The gradients, given the lines through the cells, none of which is at the border.
+    /// The gradients of cells none of which is at the border.
     #[inline(always)]
-    pub(crate) fn gradients<L: Lanes>(&self, cells: &Cells<L>, lines: &Lines<L>) -> [L; 3] {
-        let [_, down, back] = self.strides.map(|stride| stride as i32);
-        let rows = [-down, back - down, 2 * down, back + 2 * down];
-        let slabs = [-back, down - back, 2 * back, down + 2 * back];
-        let rows = V::pairs_around::<L, 4>(self.voxels, cells.base, rows);
-        let slabs = V::pairs_around::<L, 4>(self.voxels, cells.base, slabs);
-        gradients_by(cells, lines, [rows, slabs], [[L::ONE; 2]; 3])
+    pub(crate) fn gradients<L: Lanes>(&self, cells: &Cells<L>) -> [L; 3] {
+        gradients_by::<V, L>(cells, V::around(self.voxels, cells.base, &self.stencil), [[L::ONE; 2]; 3])
     }
 
     /// The gradients of cells that may be at the border.
@@ -138,39 +116,51 @@ impl<V: Voxel + Pairs> Trilinear<'_, V> {
             times[a] = [L::select(is_first, two, L::ONE), L::select(is_last, two, L::ONE)];
         }
         let [down, back, both] = self.next_lines::<L>();
-        let (a, b) = (self.line_at_border(cells, none), self.line_at_border(cells, down));
-        let (c, d) = (self.line_at_border(cells, back), self.line_at_border(cells, both));
-        let mut beyond = [[[L::ZERO; 2]; 4]; 2];
-        for (pairs, ([before, after], next)) in beyond.iter_mut().zip([(steps[1], back), (steps[2], down)]) {
-            for (pair, away) in pairs.iter_mut().zip([before, before + next, after, after + next]) {
-                *pair = V::pairs::<L>(self.voxels, cells.base + away);
-            }
-        }
-        gradients_by(cells, &[a, b, c, d], beyond, times)
+        let away = [none, down, back, both];
+        let lines = each(
+            #[inline(always)]
+            |n| self.line_at_border(cells, away[n]),
+        );
+        let [rows, slabs] = each(
+            #[inline(always)]
+            |n| {
+                let ([before, after], next) = [(steps[1], back), (steps[2], down)][n];
+                let away = [before, before + next, after, after + next];
+                each(
+                    #[inline(always)]
+                    |n| V::pairs::<L, 1>(self.voxels, cells.base + away[n], &Away::HERE)[0],
+                )
+            },
+        );
+        gradients_by::<V, L>(cells, Around { lines, rows, slabs }, times)
     }
 }
 
-/// The gradients by differences of the corners' neighbours, in the order of operations of the scalar definition: `beyond` are
-/// the pairs above and below the four lines, and in front of and behind them, `times` what the differences at the lower and the
-/// upper corner of each axis are multiplied by.
+/// The gradients by differences of the corners' neighbours, in the order of operations of the scalar definition; `times` are what the
+/// differences at the lower and the upper corner of each axis are multiplied by. On the border what would be outside is what is there.
 #[inline(always)]
-fn gradients_by<L: Lanes>(
+fn gradients_by<V: Pairs, L: Lanes>(
     cells: &Cells<L>,
-    [a, b, c, d]: &Lines<L>,
-    [[above_a, above_c, below_b, below_d], [front_a, front_b, behind_c, behind_d]]: [[[L; 2]; 4]; 2],
+    Around { lines, rows, slabs }: Around<V, L>,
     times: [[L; 2]; 3],
 ) -> [L; 3] {
     let at = cells.fraction;
-    let [near, far] = times[0];
-    let along_i = half(
-        bilinear([(a[2] - a[0]) * near, (b[2] - b[0]) * near, (c[2] - c[0]) * near, (d[2] - d[0]) * near], at),
-        bilinear([(a[3] - a[1]) * far, (b[3] - b[1]) * far, (c[3] - c[1]) * far, (d[3] - d[1]) * far], at),
-        at,
+    let [above_a, above_c, below_b, below_d] = rows;
+    let [front_a, front_b, behind_c, behind_d] = slabs;
+    let ends = each(
+        #[inline(always)]
+        |n| ([lines[n][0], lines[n][1]], [lines[n][2], lines[n][3]]),
     );
-    let [a, b, c, d] = [[a[1], a[2]], [b[1], b[2]], [c[1], c[2]], [d[1], d[2]]];
-    let along_j = across([above_a, a, above_c, c], [b, below_b, d, below_d], [times[1], times[1]], at);
-    let [near, far] = times[2];
-    let along_k = across([front_a, front_b, a, b], [c, d, behind_c, behind_d], [[near; 2], [far; 2]], at);
+    let along_i = across::<V, L>(ends, [times[0]; 4], at);
+    let [a, b, c, d] = each(
+        #[inline(always)]
+        |n| [lines[n][1], lines[n][2]],
+    );
+    let [near, far] = [[times[1][0]; 2], [times[1][1]; 2]];
+    let along_j = across::<V, L>([(above_a, b), (a, below_b), (above_c, d), (c, below_d)], [near, far, near, far], at);
+    let [near, far] = [[times[2][0]; 2], [times[2][1]; 2]];
+    let along_k =
+        across::<V, L>([(front_a, c), (front_b, d), (a, behind_c), (b, behind_d)], [near, near, far, far], at);
     [along_i, along_j, along_k]
 }
 
@@ -180,39 +170,29 @@ fn bilinear<L: Lanes>([a, b, c, d]: [L; 4], [_, v, w]: [L; 3]) -> L {
     lerp(lerp(a, b, v), lerp(c, d, v), w)
 }
 
-/// Half of what lies between the ends of a cell's lines.
+/// Half the differences of pairs of samples, line by line, `times` their factors, interpolated.
 #[inline(always)]
-fn half<L: Lanes>(low: L, high: L, [u, _, _]: [L; 3]) -> L {
-    L::from_f64(0.5) * lerp(low, high, u)
-}
-
-/// Half the differences across the lines of a cell, `times` their factors line by line, interpolated.
-#[inline(always)]
-fn across<L: Lanes>(low: [[L; 2]; 4], high: [[L; 2]; 4], times: [[L; 2]; 2], at: [L; 3]) -> L {
+fn across<V: Pairs, L: Lanes>(pairs: [([V::Stored<L>; 2], [V::Stored<L>; 2]); 4], times: [[L; 2]; 4], at: [L; 3]) -> L {
     let mut ends = [L::ZERO; 2];
     for (x, end) in ends.iter_mut().enumerate() {
         let mut differences = [L::ZERO; 4];
         for n in 0..4 {
-            differences[n] = (high[n][x] - low[n][x]) * times[n / 2][n % 2];
+            let (before, after) = pairs[n];
+            differences[n] = V::to_lanes::<L>(after[x] - before[x]) * times[n][x];
         }
         *end = bilinear(differences, at);
     }
-    half(ends[0], ends[1], at)
+    L::from_f64(0.5) * lerp(ends[0], ends[1], at[0])
 }
 
-/// The interpolated stored samples of the lines through the cells.
+/// [`interpolate`](super::interpolate) between pairs along i: their first samples, and how much more the second ones are.
 #[inline(always)]
-pub(crate) fn values_of<L: Lanes>(cells: &Cells<L>, lines: &Lines<L>) -> L {
-    let [a, b, c, d] = lines;
-    trilinear([[a[1], a[2]], [b[1], b[2]], [c[1], c[2]], [d[1], d[2]]], cells.fraction)
-}
-
-/// [`interpolate`](super::interpolate) between pairs along i.
-#[inline(always)]
-pub(super) fn trilinear<L: Number>([a, b, c, d]: [[L; 2]; 4], [u, v, w]: [L; 3]) -> L {
-    let (lower, upper) =
-        (lerp(lerp(a[0], a[1], u), lerp(b[0], b[1], u), v), lerp(lerp(c[0], c[1], u), lerp(d[0], d[1], u), v));
-    lerp(lower, upper, w)
+pub(super) fn trilinear<L: Number>(pairs: [[L; 2]; 4], [u, v, w]: [L; 3]) -> L {
+    let [a, b, c, d] = each(
+        #[inline(always)]
+        |n| u.mul_plus(pairs[n][1], pairs[n][0]),
+    );
+    lerp(lerp(a, b, v), lerp(c, d, v), w)
 }
 
 #[inline(always)]

@@ -44,4 +44,4 @@ pub use spacing::{Even, SliceTable, Spacing, Uneven};
 pub use trilinear::{Trilinear, interpolate};
 pub use voxel::Voxel;
 
-pub(crate) use lanes::{Cells, values_of};
+pub(crate) use lanes::Cells;

@@ -2,6 +2,7 @@
 
 use super::{Cell, Even, Position, Spacing, Voxel};
 use crate::error::Result;
+use crate::simd::Stencil;
 
 /// A scalar channel on the lattice, interpolated trilinearly. `K` is how its slices follow each other.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +12,8 @@ pub struct Trilinear<'v, V, K = Even> {
     /// Distance in memory to the next voxel along each axis; 0 along an axis of one voxel, which is its own neighbour.
     pub(super) strides: [usize; 3],
     pub(super) spacing: K,
+    /// Where lanes read.
+    pub(super) stencil: Stencil,
 }
 
 impl<'v, V: Voxel> Trilinear<'v, V> {
@@ -28,6 +31,7 @@ impl<'v, V: Voxel> Trilinear<'v, V> {
             dims,
             strides: [step(0, 1), step(1, dims[0]), step(2, dims[0] * dims[1])],
             spacing: Even,
+            stencil: Stencil::new(step(1, dims[0]), step(2, dims[0] * dims[1])),
         })
     }
 }
@@ -35,8 +39,8 @@ impl<'v, V: Voxel> Trilinear<'v, V> {
 impl<'v, V: Voxel, K: Spacing> Trilinear<'v, V, K> {
     /// The same channel with slices at other places. Panics later if the table is not of this lattice.
     pub fn with_spacing<L: Spacing>(self, spacing: L) -> Trilinear<'v, V, L> {
-        let Trilinear { voxels, dims, strides, .. } = self;
-        Trilinear { voxels, dims, strides, spacing }
+        let Trilinear { voxels, dims, strides, stencil, .. } = self;
+        Trilinear { voxels, dims, strides, spacing, stencil }
     }
 
     /// The cell of a position, and where in it.

@@ -10,8 +10,8 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::lanes::{attenuation, last, last_pair, last_quad, last_word};
 use super::register::arithmetic;
-use super::{BATCH, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
-use crate::math::Number;
+use super::{Away, BATCH, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
+use crate::math::{Number, each};
 use memory::{load_vectors, store_vectors};
 
 /// Runs a kernel compiled for these instructions.
@@ -105,16 +105,6 @@ fn ranks(mask: Mask8) -> __m256i {
 #[inline(always)]
 fn clamped(at: I32x8, last: u32) -> __m256i {
     unsafe { _mm256_min_epu32(at.0, _mm256_set1_epi32(last as i32)) }
-}
-
-/// The lower and the upper 16 bits of each lane, signed.
-#[inline(always)]
-fn halves(both: __m256i) -> [F32x8; 2] {
-    unsafe {
-        let first = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(both));
-        let second = _mm256_srai_epi32::<16>(both);
-        [F32x8(_mm256_cvtepi32_ps(first)), F32x8(_mm256_cvtepi32_ps(second))]
-    }
 }
 
 /// Entries of a table of two registers, by indices below 16.
@@ -216,11 +206,15 @@ impl Lanes for F32x8 {
         halves_by(table, clamped(at, BATCH as u32 - 1))
     }
     #[inline(always)]
-    fn pairs_i16(samples: &[i16], at: I32x8) -> [Self; 2] {
-        unsafe {
-            // Two neighbours in one read of 32 bits.
-            halves(_mm256_i32gather_epi32::<2>(samples.as_ptr().cast(), clamped(at, last_pair(samples))))
-        }
+    fn pairs_i16<const N: usize>(samples: &[i16], at: I32x8, away: &Away<N>) -> [I32x8; N] {
+        each(
+            #[inline(always)]
+            |n| {
+                let at = clamped(at + I32x8::splat(away.distance(n)), last_pair(samples));
+                // Two neighbours in one read of 32 bits.
+                I32x8(unsafe { _mm256_i32gather_epi32::<2>(samples.as_ptr().cast(), at) })
+            },
+        )
     }
     #[inline(always)]
     fn pairs_f32(samples: &[f32], at: I32x8) -> [Self; 2] {
@@ -229,25 +223,25 @@ impl Lanes for F32x8 {
         unsafe { [F32x8(_mm256_i32gather_ps::<4>(samples.as_ptr(), at)), F32x8(_mm256_i32gather_ps::<4>(next, at))] }
     }
     #[inline(always)]
-    fn quads_i16(samples: &[i16], at: I32x8) -> [Self; 4] {
-        unsafe {
-            let at = clamped(at, last_quad(samples));
-            let from = samples.as_ptr().cast();
-            // Four neighbours in one read of 64 bits, for half of the lanes at a time.
-            let low = _mm256_i32gather_epi64::<2>(from, _mm256_castsi256_si128(at));
-            let high = _mm256_i32gather_epi64::<2>(from, _mm256_extracti128_si256::<1>(at));
-            let (low, high) = (_mm256_castsi256_ps(low), _mm256_castsi256_ps(high));
-            // The pairs of lanes 0 1 4 5 2 3 6 7, then put in order.
-            let first = _mm256_castps_pd(_mm256_shuffle_ps::<0b10_00_10_00>(low, high));
-            let second = _mm256_castps_pd(_mm256_shuffle_ps::<0b11_01_11_01>(low, high));
-            let [first, second, third, fourth] = {
-                let first = _mm256_castpd_si256(_mm256_permute4x64_pd::<0b11_01_10_00>(first));
-                let second = _mm256_castpd_si256(_mm256_permute4x64_pd::<0b11_01_10_00>(second));
-                let ([a, b], [c, d]) = (halves(first), halves(second));
-                [a, b, c, d]
-            };
-            [first, second, third, fourth]
-        }
+    fn quads_i16<const N: usize>(samples: &[i16], at: I32x8, away: &Away<N>) -> [[I32x8; 2]; N] {
+        each(
+            #[inline(always)]
+            |n| unsafe {
+                let at = clamped(at + I32x8::splat(away.distance(n)), last_quad(samples));
+                let from = samples.as_ptr().cast();
+                // Four neighbours in one read of 64 bits, for half of the lanes at a time.
+                let low = _mm256_i32gather_epi64::<2>(from, _mm256_castsi256_si128(at));
+                let high = _mm256_i32gather_epi64::<2>(from, _mm256_extracti128_si256::<1>(at));
+                let (low, high) = (_mm256_castsi256_ps(low), _mm256_castsi256_ps(high));
+                // The pairs of lanes 0 1 4 5 2 3 6 7, then put in order.
+                let first = _mm256_castps_si256(_mm256_shuffle_ps::<0b10_00_10_00>(low, high));
+                let last = _mm256_castps_si256(_mm256_shuffle_ps::<0b11_01_11_01>(low, high));
+                [
+                    I32x8(_mm256_permute4x64_epi64::<0b11_01_10_00>(first)),
+                    I32x8(_mm256_permute4x64_epi64::<0b11_01_10_00>(last)),
+                ]
+            },
+        )
     }
     #[inline(always)]
     fn quads_f32(samples: &[f32], at: I32x8) -> [Self; 4] {
@@ -329,6 +323,15 @@ impl Ints for I32x8 {
     #[inline(always)]
     fn shifted_right(self, bits: u32) -> Self {
         I32x8(unsafe { _mm256_srav_epi32(self.0, _mm256_set1_epi32(bits as i32)) })
+    }
+    #[inline(always)]
+    fn low_half(self) -> Self {
+        I32x8(unsafe { _mm256_madd_epi16(self.0, _mm256_set1_epi32(1)) })
+    }
+    #[inline(always)]
+    fn rise(self) -> Self {
+        // 1 times the second half, -1 times the first.
+        I32x8(unsafe { _mm256_madd_epi16(self.0, _mm256_set1_epi32(0x1_ffff)) })
     }
     #[inline(always)]
     fn and(self, bits: Self) -> Self {

@@ -7,11 +7,12 @@ mod memory;
 use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::sync::atomic::{Ordering, compiler_fence};
 
 use super::lanes::{attenuation, last, last_pair, last_quad, last_word};
 use super::register::arithmetic;
-use super::{BATCH, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
-use crate::math::Number;
+use super::{Away, BATCH, Ints, Kernel, Lanes, Mask, TWO_BATCHES, Table};
+use crate::math::{Number, each};
 use memory::{four_pairs, four_quads, indices, load_vectors, quarters, store_vectors, vectors};
 
 /// Runs a kernel compiled for these instructions.
@@ -67,15 +68,11 @@ fn moved(all: __m512, distance: i32) -> __m512 {
     }
 }
 
-/// The lower and the upper 16 bits of each lane, signed.
+/// Keeps compilers from putting reads before and behind this into another order, in which they need more indices at a time than there are
+/// registers. No instruction.
 #[inline(always)]
-fn halves(both: __m512i) -> [F32x16; 2] {
-    // SAFETY: as below.
-    unsafe {
-        let first = _mm512_srai_epi32::<16>(_mm512_slli_epi32::<16>(both));
-        let second = _mm512_srai_epi32::<16>(both);
-        [F32x16(_mm512_cvtepi32_ps(first)), F32x16(_mm512_cvtepi32_ps(second))]
-    }
+fn in_this_order() {
+    compiler_fence(Ordering::SeqCst);
 }
 
 // SAFETY, for every block below: values of these types exist only in kernels that `Level::run` has started, so the processor
@@ -189,54 +186,43 @@ impl Lanes for F32x16 {
         }
     }
     #[inline(always)]
-    fn pairs_i16(samples: &[i16], at: I32x16) -> [Self; 2] {
-        unsafe {
-            let at = _mm512_min_epu32(at.0, _mm512_set1_epi32(last_pair(samples) as i32));
-            let from = samples.as_ptr();
-            let [first, second, third, fourth] = quarters(at);
-            let both = _mm512_castsi128_si512(four_pairs(from, indices(first)));
-            let both = _mm512_inserti32x4::<1>(both, four_pairs(from, indices(second)));
-            let both = _mm512_inserti32x4::<2>(both, four_pairs(from, indices(third)));
-            halves(_mm512_inserti32x4::<3>(both, four_pairs(from, indices(fourth))))
-        }
-    }
-    #[inline(always)]
-    fn pairs_around_i16<const N: usize>(samples: &[i16], at: I32x16, away: [i32; N]) -> [[Self; 2]; N] {
-        let (mut least, mut most) = (away[0], away[0]);
-        for n in 1..N {
-            (least, most) = (Ord::min(least, away[n]), Ord::max(most, away[n]));
-        }
-        let mut pairs = [[F32x16::ZERO; 2]; N];
-        let Some(last) = last_pair(samples).checked_sub((most - least) as u32) else {
-            for n in 0..N {
-                pairs[n] = Self::pairs_i16(samples, at + I32x16::splat(away[n]));
-            }
-            return pairs;
+    fn pairs_i16<const N: usize>(samples: &[i16], at: I32x16, away: &Away<N>) -> [I32x16; N] {
+        let Some(last) = last_pair(samples).checked_sub(away.reach()) else {
+            return each(
+                #[inline(always)]
+                |n| Self::pairs_i16(samples, at + I32x16::splat(away.distance(n)), &Away::HERE)[0],
+            );
         };
         unsafe {
-            let at = _mm512_add_epi32(at.0, _mm512_set1_epi32(least));
+            let at = _mm512_add_epi32(at.0, _mm512_set1_epi32(away.least()));
             let quarters = quarters(_mm512_min_epu32(at, _mm512_set1_epi32(last as i32)));
             // Indices leave their register once for all pairs.
             let mut both = [_mm512_setzero_si512(); N];
-            let from = |n: usize| samples.as_ptr().add((away[n] - least) as usize);
+            let from = |n: usize| samples.as_ptr().add(away.beyond(n));
             let places = indices(quarters[0]);
             for n in 0..N {
                 both[n] = _mm512_castsi128_si512(four_pairs(from(n), places));
             }
+            in_this_order();
             let places = indices(quarters[1]);
             for n in 0..N {
                 both[n] = _mm512_inserti32x4::<1>(both[n], four_pairs(from(n), places));
             }
+            in_this_order();
             let places = indices(quarters[2]);
             for n in 0..N {
                 both[n] = _mm512_inserti32x4::<2>(both[n], four_pairs(from(n), places));
             }
+            in_this_order();
             let places = indices(quarters[3]);
             for n in 0..N {
-                pairs[n] = halves(_mm512_inserti32x4::<3>(both[n], four_pairs(from(n), places)));
+                both[n] = _mm512_inserti32x4::<3>(both[n], four_pairs(from(n), places));
             }
+            each(
+                #[inline(always)]
+                |n| I32x16(both[n]),
+            )
         }
-        pairs
     }
     #[inline(always)]
     fn pairs_f32(samples: &[f32], at: I32x16) -> [Self; 2] {
@@ -247,49 +233,44 @@ impl Lanes for F32x16 {
         }
     }
     #[inline(always)]
-    fn quads_i16(samples: &[i16], at: I32x16) -> [Self; 4] {
-        let [quads] = Self::quads_around_i16(samples, at, [0]);
-        quads
-    }
-    #[inline(always)]
-    fn quads_around_i16<const N: usize>(samples: &[i16], at: I32x16, away: [i32; N]) -> [[Self; 4]; N] {
-        let (mut least, mut most) = (away[0], away[0]);
-        for n in 1..N {
-            (least, most) = (Ord::min(least, away[n]), Ord::max(most, away[n]));
-        }
-        let mut quads = [[F32x16::ZERO; 4]; N];
-        let Some(last) = last_quad(samples).checked_sub((most - least) as u32) else {
-            for n in 0..N {
-                [quads[n]] = Self::quads_around_i16(samples, at + I32x16::splat(away[n]), [0]);
-            }
-            return quads;
+    fn quads_i16<const N: usize>(samples: &[i16], at: I32x16, away: &Away<N>) -> [[I32x16; 2]; N] {
+        let Some(last) = last_quad(samples).checked_sub(away.reach()) else {
+            return each(
+                #[inline(always)]
+                |n| Self::quads_i16(samples, at + I32x16::splat(away.distance(n)), &Away::HERE)[0],
+            );
         };
+        let mut quads = [[I32x16::splat(0); 2]; N];
         unsafe {
-            let at = _mm512_add_epi32(at.0, _mm512_set1_epi32(least));
+            let at = _mm512_add_epi32(at.0, _mm512_set1_epi32(away.least()));
             let quarters = quarters(_mm512_min_epu32(at, _mm512_set1_epi32(last as i32)));
             // Indices leave their register once for all quads.
-            let from = |n: usize| samples.as_ptr().add((away[n] - least) as usize);
+            let from = |n: usize| samples.as_ptr().add(away.beyond(n));
             let (mut low, mut high) = ([_mm512_setzero_si512(); N], [_mm512_setzero_si512(); N]);
             let places = indices(quarters[0]);
             for n in 0..N {
                 low[n] = _mm512_castsi256_si512(four_quads(from(n), places));
             }
+            in_this_order();
             let places = indices(quarters[1]);
             for n in 0..N {
                 low[n] = _mm512_inserti64x4::<1>(low[n], four_quads(from(n), places));
             }
+            in_this_order();
             let places = indices(quarters[2]);
             for n in 0..N {
                 high[n] = _mm512_castsi256_si512(four_quads(from(n), places));
             }
+            in_this_order();
             let places = indices(quarters[3]);
             let even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
             let odd = _mm512_add_epi32(even, _mm512_set1_epi32(1));
             for n in 0..N {
                 let high = _mm512_inserti64x4::<1>(high[n], four_quads(from(n), places));
-                let [first, second] = halves(_mm512_permutex2var_epi32(low[n], even, high));
-                let [third, fourth] = halves(_mm512_permutex2var_epi32(low[n], odd, high));
-                quads[n] = [first, second, third, fourth];
+                quads[n] = [
+                    I32x16(_mm512_permutex2var_epi32(low[n], even, high)),
+                    I32x16(_mm512_permutex2var_epi32(low[n], odd, high)),
+                ];
             }
         }
         quads
@@ -396,6 +377,15 @@ impl Ints for I32x16 {
     #[inline(always)]
     fn shifted_right(self, bits: u32) -> Self {
         I32x16(unsafe { _mm512_srav_epi32(self.0, _mm512_set1_epi32(bits as i32)) })
+    }
+    #[inline(always)]
+    fn low_half(self) -> Self {
+        I32x16(unsafe { _mm512_madd_epi16(self.0, _mm512_set1_epi32(1)) })
+    }
+    #[inline(always)]
+    fn rise(self) -> Self {
+        // 1 times the second half, -1 times the first.
+        I32x16(unsafe { _mm512_madd_epi16(self.0, _mm512_set1_epi32(0x1_ffff)) })
     }
     #[inline(always)]
     fn and(self, bits: Self) -> Self {

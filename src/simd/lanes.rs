@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::{BATCH, TWO_BATCHES, Table};
+use super::{Away, BATCH, TWO_BATCHES, Table};
 use crate::math::Number;
 #[cfg(target_arch = "x86_64")]
 use crate::math::{THIN, mean_transmittance_of_thin};
@@ -86,32 +86,14 @@ pub(crate) trait Lanes: Number {
     fn pick16(table: &[f32; BATCH], at: Self::Ints) -> Self;
     /// Entries of a table of two of these; likewise.
     fn pick32(table: &[f32; TWO_BATCHES], at: Self::Ints) -> Self;
-    /// The samples at `at` and at `at + 1`, as f32: see [`Pairs`].
-    fn pairs_i16(samples: &[i16], at: Self::Ints) -> [Self; 2];
+    /// The samples at these distances from `at`, each with the next one in one number: see [`Ints::low_half`] and [`Pairs`].
+    fn pairs_i16<const N: usize>(samples: &[i16], at: Self::Ints, away: &Away<N>) -> [Self::Ints; N];
+    /// Likewise four samples in two numbers.
+    fn quads_i16<const N: usize>(samples: &[i16], at: Self::Ints, away: &Away<N>) -> [[Self::Ints; 2]; N];
     /// The samples at `at` and at `at + 1`: see [`Pairs`].
     fn pairs_f32(samples: &[f32], at: Self::Ints) -> [Self; 2];
-    /// Those pairs at several distances from `at`.
-    #[inline(always)]
-    fn pairs_around_i16<const N: usize>(samples: &[i16], at: Self::Ints, away: [i32; N]) -> [[Self; 2]; N] {
-        let mut pairs = [[Self::ZERO; 2]; N];
-        for n in 0..N {
-            pairs[n] = Self::pairs_i16(samples, at + Self::Ints::splat(away[n]));
-        }
-        pairs
-    }
-    /// The samples from `at` to `at + 3`, as f32: see [`Pairs`].
-    fn quads_i16(samples: &[i16], at: Self::Ints) -> [Self; 4];
     /// The samples from `at` to `at + 3`: see [`Pairs`].
     fn quads_f32(samples: &[f32], at: Self::Ints) -> [Self; 4];
-    /// Those from several distances from `at` on.
-    #[inline(always)]
-    fn quads_around_i16<const N: usize>(samples: &[i16], at: Self::Ints, away: [i32; N]) -> [[Self; 4]; N] {
-        let mut quads = [[Self::ZERO; 4]; N];
-        for n in 0..N {
-            quads[n] = Self::quads_i16(samples, at + Self::Ints::splat(away[n]));
-        }
-        quads
-    }
     /// The lanes for which the mask is true, in order, at the front; the others are unspecified.
     fn compress(self, mask: Self::Mask) -> Self;
     /// The first lanes, in order, where the mask is true; the others are unspecified.
@@ -198,6 +180,15 @@ pub(crate) trait Ints:
     fn store(self, to: &mut [i32]);
     /// Halved so many times, towards -∞.
     fn shifted_right(self, bits: u32) -> Self;
+    /// The lower 16 bits, signed.
+    fn low_half(self) -> Self;
+    /// The upper 16 bits, signed.
+    #[inline(always)]
+    fn high_half(self) -> Self {
+        self.shifted_right(16)
+    }
+    /// `high_half − low_half`.
+    fn rise(self) -> Self;
     /// The bits that both have.
     fn and(self, bits: Self) -> Self;
     /// The smaller one.
@@ -243,55 +234,6 @@ pub(crate) trait Mask: Copy + 'static {
     #[inline(always)]
     fn any(self) -> bool {
         self.bits() != 0
-    }
-}
-
-/// Samples that are read two neighbours at a time.
-pub(crate) trait Pairs: Sized {
-    /// The samples at `at` and at `at + 1`, as f32. Indices at which no pair begins give another pair of the slice, which has
-    /// at least two samples and at most 2³¹.
-    fn pairs<L: Lanes>(samples: &[Self], at: L::Ints) -> [L; 2];
-    /// The pairs at these distances from `at`.
-    fn pairs_around<L: Lanes, const N: usize>(samples: &[Self], at: L::Ints, away: [i32; N]) -> [[L; 2]; N];
-    /// The samples from each of these distances from `at` to three further on, as f32; likewise, of a slice of at least four.
-    fn quads_around<L: Lanes, const N: usize>(samples: &[Self], at: L::Ints, away: [i32; N]) -> [[L; 4]; N];
-}
-
-impl Pairs for i16 {
-    #[inline(always)]
-    fn pairs<L: Lanes>(samples: &[i16], at: L::Ints) -> [L; 2] {
-        L::pairs_i16(samples, at)
-    }
-    #[inline(always)]
-    fn pairs_around<L: Lanes, const N: usize>(samples: &[i16], at: L::Ints, away: [i32; N]) -> [[L; 2]; N] {
-        L::pairs_around_i16(samples, at, away)
-    }
-    #[inline(always)]
-    fn quads_around<L: Lanes, const N: usize>(samples: &[i16], at: L::Ints, away: [i32; N]) -> [[L; 4]; N] {
-        L::quads_around_i16(samples, at, away)
-    }
-}
-
-impl Pairs for f32 {
-    #[inline(always)]
-    fn pairs<L: Lanes>(samples: &[f32], at: L::Ints) -> [L; 2] {
-        L::pairs_f32(samples, at)
-    }
-    #[inline(always)]
-    fn pairs_around<L: Lanes, const N: usize>(samples: &[f32], at: L::Ints, away: [i32; N]) -> [[L; 2]; N] {
-        let mut pairs = [[L::ZERO; 2]; N];
-        for n in 0..N {
-            pairs[n] = L::pairs_f32(samples, at + L::Ints::splat(away[n]));
-        }
-        pairs
-    }
-    #[inline(always)]
-    fn quads_around<L: Lanes, const N: usize>(samples: &[f32], at: L::Ints, away: [i32; N]) -> [[L; 4]; N] {
-        let mut quads = [[L::ZERO; 4]; N];
-        for n in 0..N {
-            quads[n] = L::quads_f32(samples, at + L::Ints::splat(away[n]));
-        }
-        quads
     }
 }
 

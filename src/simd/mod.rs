@@ -14,6 +14,7 @@ mod avx512;
 mod joining;
 mod lanes;
 mod level;
+mod pairs;
 #[cfg(target_arch = "x86_64")]
 mod register;
 mod scalar;
@@ -22,8 +23,9 @@ mod table;
 pub use level::Level;
 
 pub(crate) use joining::Joining;
-pub(crate) use lanes::{Doubles, Ints, Lanes, Mask, Pairs};
+pub(crate) use lanes::{Doubles, Ints, Lanes, Mask};
 pub(crate) use level::Kernel;
+pub(crate) use pairs::{Around, Away, Pairs, Stencil};
 pub(crate) use table::{Table, Tables};
 
 /// Numbers in a register of the widest level. What is summed over neighbours is summed over so many at every level, in the

@@ -3,7 +3,8 @@
 #[cfg(target_arch = "x86_64")]
 use super::Kernel;
 use super::lanes::{last_pair, last_quad};
-use super::{BATCH, Doubles, Ints, Lanes, Mask, TWO_BATCHES, Table};
+use super::{Away, BATCH, Doubles, Ints, Lanes, Mask, TWO_BATCHES, Table};
+use crate::math::each;
 
 /// Runs a kernel compiled for fused operations, which are calls of a function elsewhere.
 ///
@@ -84,19 +85,29 @@ impl Lanes for f32 {
         table[(at as u32 as usize).min(BATCH - 1)]
     }
     #[inline(always)]
-    fn pairs_i16(samples: &[i16], at: i32) -> [Self; 2] {
-        let at = (at as u32).min(last_pair(samples)) as usize;
-        [f32::from(samples[at]), f32::from(samples[at + 1])]
+    fn pairs_i16<const N: usize>(samples: &[i16], at: i32, away: &Away<N>) -> [i32; N] {
+        each(
+            #[inline(always)]
+            |n| {
+                let at = ((at + away.distance(n)) as u32).min(last_pair(samples)) as usize;
+                packed(samples[at], samples[at + 1])
+            },
+        )
+    }
+    #[inline(always)]
+    fn quads_i16<const N: usize>(samples: &[i16], at: i32, away: &Away<N>) -> [[i32; 2]; N] {
+        each(
+            #[inline(always)]
+            |n| {
+                let four = &samples[((at + away.distance(n)) as u32).min(last_quad(samples)) as usize..][..4];
+                [packed(four[0], four[1]), packed(four[2], four[3])]
+            },
+        )
     }
     #[inline(always)]
     fn pairs_f32(samples: &[f32], at: i32) -> [Self; 2] {
         let at = (at as u32).min(last_pair(samples)) as usize;
         [samples[at], samples[at + 1]]
-    }
-    #[inline(always)]
-    fn quads_i16(samples: &[i16], at: i32) -> [Self; 4] {
-        let four = &samples[(at as u32).min(last_quad(samples)) as usize..][..4];
-        [f32::from(four[0]), f32::from(four[1]), f32::from(four[2]), f32::from(four[3])]
     }
     #[inline(always)]
     fn quads_f32(samples: &[f32], at: i32) -> [Self; 4] {
@@ -115,6 +126,12 @@ impl Lanes for f32 {
     fn among(self, other: Self, at: i32) -> Self {
         if at == 0 { self } else { other }
     }
+}
+
+/// Two samples in one number, the first one in the lower half.
+#[inline(always)]
+fn packed(first: i16, second: i16) -> i32 {
+    i32::from(first as u16) | i32::from(second) << 16
 }
 
 impl Doubles for f64 {
@@ -193,6 +210,14 @@ impl Ints for i32 {
     #[inline(always)]
     fn shifted_right(self, bits: u32) -> Self {
         self >> bits
+    }
+    #[inline(always)]
+    fn low_half(self) -> Self {
+        i32::from(self as i16)
+    }
+    #[inline(always)]
+    fn rise(self) -> Self {
+        self.high_half() - self.low_half()
     }
     #[inline(always)]
     fn and(self, bits: Self) -> Self {

@@ -1,6 +1,8 @@
 //! One body over all levels: every lane does what one number does, to the bit.
 
-use super::{BATCH, Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, TWO_BATCHES, Table, Tables};
+use super::{
+    Around, Away, BATCH, Doubles, Ints, Kernel, Lanes, Level, Mask, Pairs, Stencil, TWO_BATCHES, Table, Tables,
+};
 use crate::math::each;
 
 /// Numbers of all magnitudes, signs and roundings, the same on each call.
@@ -12,6 +14,29 @@ fn numbers(count: usize, seed: u32) -> Vec<f32> {
     };
     let of = |bits: u32, by: i32| (bits as f32 / u32::MAX as f32 - 0.5) * 2f32.powi(by % 20);
     (0..count).map(|_| of(next(), next() as i32 >> 8)).collect()
+}
+
+/// Samples at any place and at places with a good many on either side, with their neighbours.
+#[inline(always)]
+fn with_neighbours<V: Pairs, L: Lanes>(samples: &[V], places: L::Ints, inner: L::Ints) -> Vec<L> {
+    let Around { lines, rows, slabs } = V::around::<L>(samples, inner, &Stencil::new(2, 5));
+    let pairs = [
+        V::pairs::<L, 1>(samples, places, &Away::HERE).to_vec(),
+        V::pairs::<L, 2>(samples, inner, &Away::new([-3, 2])).to_vec(),
+    ];
+    let quads = [
+        V::quads::<L, 1>(samples, places, &Away::HERE).to_vec(),
+        V::quads::<L, 2>(samples, inner, &Away::new([-8, 700])).to_vec(),
+    ];
+    let pairs = [&pairs.concat()[..], &rows, &slabs].concat().concat();
+    let quads = [&quads.concat()[..], &lines].concat().concat();
+    let differences = [pairs[0] - pairs[3], quads[0] - quads[3]];
+    let stored = [&pairs[..], &quads, &differences].concat();
+    let rises = [
+        V::rises::<L, 1>(samples, places, &Away::HERE).to_vec(),
+        V::rises::<L, 2>(samples, inner, &Away::new([-3, 2])).to_vec(),
+    ];
+    stored.into_iter().map(V::to_lanes).chain(rises.concat().concat()).collect()
 }
 
 /// Everything that lanes compute, as bits, 16 numbers at a time whatever the level.
@@ -30,7 +55,7 @@ impl Kernel for Everything {
         let wholes: Vec<i32> = samples.iter().map(|&x| i32::from(x) * 77).collect();
         let sixteen: [f32; BATCH] = std::array::from_fn(|i| b[i]);
         let thirty_two: [f32; TWO_BATCHES] = std::array::from_fn(|i| b[i]);
-        let mut out = vec![Vec::new(); 96];
+        let mut out = vec![Vec::new(); 166];
         for at in (0..4096).step_by(L::LANES) {
             let (x, y) = (L::load(&a[at..]), L::load(&b[at..]));
             let places = L::Ints::load(&places[at..]);
@@ -68,8 +93,6 @@ impl Kernel for Everything {
                 L::pick16(&sixteen, places),
                 L::pick32(&thirty_two, places),
             ];
-            let [first, second] = i16::pairs::<L>(&samples, places);
-            let [third, fourth] = f32::pairs::<L>(&b, places);
             let (d, e) = (L::Doubles::from_ints(places) * L::Doubles::splat(0.37), L::Doubles::from_ints(whole));
             let few = L::Ints::splat(3).min(places.max(whole));
             let few = few.max(L::Ints::splat(0));
@@ -91,27 +114,18 @@ impl Kernel for Everything {
                 L::from_ints(L::Ints::gather(&wholes, places)),
             ];
             let mut lanes = vec![0.0; L::LANES];
-            let pairs = [first, second, third, fourth];
             let near = places.and(L::Ints::splat(0xff)) + L::Ints::splat(8);
-            let of_i16 = i16::pairs_around::<L, 2>(&samples, near, [-3, 2]);
-            let around = [of_i16, f32::pairs_around::<L, 2>(&b, near, [5, 0])].concat().concat();
             let vectors = L::vectors(b.as_chunks::<4>().0, near);
-            let quads_of_i16 = i16::quads_around::<L, 2>(&samples, near, [-8, 700]);
-            let quads_of_f32 = f32::quads_around::<L, 2>(&b, near, [900, 0]);
-            let at_ends =
-                [i16::quads_around::<L, 1>(&samples, places, [0]), f32::quads_around::<L, 1>(&b, places, [0])];
-            let quads = [at_ends.concat(), quads_of_i16.to_vec(), quads_of_f32.to_vec()].concat().concat();
-            for (k, v) in
-                found.into_iter().chain(pairs).chain(around).chain(vectors).chain(quads).chain(more).enumerate()
-            {
+            let read = [with_neighbours::<i16, L>(&samples, places, near), with_neighbours::<f32, L>(&b, places, near)];
+            for (k, v) in found.into_iter().chain(read.concat()).chain(vectors).chain(more).enumerate() {
                 v.store(&mut lanes);
                 out[k].extend(lanes.iter().map(|v| v.to_bits()));
             }
         }
         for batch in a.as_chunks::<BATCH>().0 {
             let (before, all) = L::accumulated(&batch.map(|x| crate::math::absorbed_f32(x.abs())));
-            out[94].extend(before.map(f32::to_bits));
-            out[95].extend([(all + L::sum(batch)).to_bits(); BATCH]);
+            out[164].extend(before.map(f32::to_bits));
+            out[165].extend([(all + L::sum(batch)).to_bits(); BATCH]);
         }
         out.concat()
     }

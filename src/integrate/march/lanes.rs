@@ -3,7 +3,7 @@
 use super::composite::{EMPTY, Run};
 use super::medium::Medium;
 use crate::classify::LaneClassifier;
-use crate::field::{Batch, Cells, GradientUnits, Magnitude, Trilinear, Voxel, values_of};
+use crate::field::{Batch, Cells, GradientUnits, Magnitude, Trilinear, Voxel};
 use crate::integrate::shade::{Course, LaneShader};
 use crate::simd::{Lanes, Pairs};
 
@@ -32,14 +32,9 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Medium for ByLanes<'_, 
         let inside = S::SHADES && !self.field.meets_border(batch);
         for at in (0..batch.samples).step_by(L::LANES) {
             let cells = self.field.cells::<L>(batch, at);
-            let samples = if inside {
-                let lines = self.field.lines(&cells);
-                let gradients = || self.field.gradients(&cells, &lines);
-                self.shaded(aim, &cells, values_of(&cells, &lines), gradients)
-            } else {
-                let gradients = || self.field.gradients_at_border(&cells);
-                self.shaded(aim, &cells, self.field.values(&cells), gradients)
-            };
+            let gradients =
+                || if inside { self.field.gradients(&cells) } else { self.field.gradients_at_border(&cells) };
+            let samples = self.shaded(aim, &cells, self.field.values(&cells), gradients);
             if let Some(samples) = samples {
                 any = true;
                 for c in 0..4 {

@@ -5,7 +5,7 @@ use glam::DMat3;
 use crate::field::{BlockRanges, Trilinear, Voxel};
 use crate::integrate::occupancy::Occupancy;
 use crate::math::{Number, each};
-use crate::simd::{BATCH, Ints, Lanes, Mask, Pairs};
+use crate::simd::{Around, Away, BATCH, Ints, Lanes, Mask, Pairs, Stencil};
 use crate::volume::{Rescale, Volume};
 
 /// Stored samples by voxel index, with what a gradient in HU/mm needs. Every axis has at least two voxels.
@@ -16,6 +16,7 @@ pub(in crate::integrate::exact) struct Voxels<'a, V> {
     to_value_per_mm: DMat3,
     /// Whether the axes are the patient's.
     is_diagonal: bool,
+    stencil: Stencil,
 }
 
 /// The lower corners of cells, voxel indices.
@@ -34,7 +35,8 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
         let Rescale { slope, .. } = volume.rescale();
         let to_value_per_mm = volume.grid().gradient_to_per_mm() * slope;
         let is_diagonal = to_value_per_mm == DMat3::from_diagonal(to_value_per_mm.diagonal());
-        fits.then_some(Voxels { samples, dims, to_value_per_mm, is_diagonal })
+        let stencil = Stencil::new(dims[0], dims[0] * dims[1]);
+        fits.then_some(Voxels { samples, dims, to_value_per_mm, is_diagonal, stencil })
     }
 
     /// Where something may show, given the ranges of stored values at which it does.
@@ -53,9 +55,12 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     /// Stored samples at the corners of cells, x fastest.
     #[inline(always)]
     pub(super) fn corners<L: Lanes>(&self, base: L::Ints) -> [L; 8] {
-        let [_, row, slab] = self.strides();
-        let [[a, b], [c, d], [e, f], [g, h]] = V::pairs_around::<L, 4>(self.samples, base, [0, row, slab, row + slab]);
-        [a, b, c, d, e, f, g, h]
+        let [[a, b], [c, d], [e, f], [g, h]] = V::pairs::<L, 4>(self.samples, base, &self.stencil.edges);
+        let corners = [a, b, c, d, e, f, g, h];
+        each(
+            #[inline(always)]
+            |c| V::to_lanes(corners[c]),
+        )
     }
 
     /// From a voxel to the next along each axis, in memory.
@@ -67,7 +72,8 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     /// The samples at places in memory, and their neighbours along x.
     #[inline(always)]
     fn pair<L: Lanes>(&self, at: L::Ints) -> [L; 2] {
-        V::pairs::<L>(self.samples, at)
+        let [[first, second]] = V::pairs::<L, 1>(self.samples, at, &Away::HERE);
+        [V::to_lanes(first), V::to_lanes(second)]
     }
 
     /// Gradients in HU/mm at the corners of cells, of which these are the samples: central differences, one-sided at the
@@ -116,18 +122,14 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
     /// The same of cells none of which is at the border, samples at their corners included.
     #[inline(always)]
     pub(super) fn inner_gradients<L: Lanes>(&self, base: L::Ints) -> [[L; 8]; 3] {
-        let [_, row, slab] = self.strides();
         let half = L::from_f64(0.5);
-        let before = base - splat::<L>(1);
+        let Around { lines, rows, slabs } = V::around::<L>(self.samples, base, &self.stencil);
         // Corner by corner, in place of loops over arrays that would be cleared first.
-        let [[a, c0, c1, b], [d, c2, c3, e], [f, c4, c5, g], [h, c6, c7, i]] =
-            V::quads_around::<L, 4>(self.samples, before, [0, row, slab, row + slab]);
+        let [[a, c0, c1, b], [d, c2, c3, e], [f, c4, c5, g], [h, c6, c7, i]] = lines;
         let x = [c1 - a, b - c0, c3 - d, e - c2, c5 - f, g - c4, c7 - h, i - c6];
-        let beyond = [-row, 2 * row, slab - row, slab + 2 * row];
-        let [[a, b], [c, d], [e, f], [g, h]] = V::pairs_around::<L, 4>(self.samples, base, beyond);
+        let [[a, b], [e, f], [c, d], [g, h]] = rows;
         let y = [c2 - a, c3 - b, c - c0, d - c1, c6 - e, c7 - f, g - c4, h - c5];
-        let beyond = [-slab, 2 * slab, row - slab, row + 2 * slab];
-        let [[a, b], [c, d], [e, f], [g, h]] = V::pairs_around::<L, 4>(self.samples, base, beyond);
+        let [[a, b], [e, f], [c, d], [g, h]] = slabs;
         let z = [c4 - a, c5 - b, c6 - e, c7 - f, c - c0, d - c1, g - c2, h - c3];
         let differences = [x, y, z];
         let per_index = each(
@@ -135,7 +137,7 @@ impl<'a, V: Voxel + Pairs> Voxels<'a, V> {
             |axis| {
                 each(
                     #[inline(always)]
-                    |c| differences[axis][c] * half,
+                    |c| V::to_lanes::<L>(differences[axis][c]) * half,
                 )
             },
         );

@@ -134,9 +134,9 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Tile<'_, '_, V, C, S> {
         order.clear();
         self.pixels.neighbours_first().for_each(|pixel| order.push(pixel));
         rays.through(&self.frame.scene.camera, order.iter().map(|&(_, pixel)| pixel));
-        let grid = self.frame.volume.grid();
+        let (grid, dims) = (self.frame.volume.grid(), self.kernel.field.dims());
         chords.of(grid, &self.frame.scene.effects.clip, rays);
-        pieces.count = 0;
+        pieces.clear();
         met.clear();
         halves.clear();
         for (k, &(n, pixel)) in order.iter().enumerate() {
@@ -144,18 +144,18 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Tile<'_, '_, V, C, S> {
             let Some((chord, stretches)) = self.sampling.along_chord(ray, pixel, || chords.get(k)) else { continue };
             met.push((n, pieces.count));
             for stretch in stretches.iter().filter(|stretch| stretch.samples > 0) {
-                pieces.add(&chord, stretch, self.kernel.field.dims());
                 // Lanes are for pieces of some length; most single samples at the border show nothing.
-                let is_empty = |space: &EmptySpace| !space.is_active(pieces.last_corner());
+                let is_empty = |space: &EmptySpace| !space.is_active(pieces::corner(&chord, stretch, dims));
                 if stretch.samples == 1 && self.kernel.empty_space.is_some_and(is_empty) {
-                    pieces.take_back();
                     continue;
                 }
+                pieces.add(&chord, stretch, dims);
                 for (light, half) in self.kernel.shader.half_vectors(ray.direction).enumerate() {
                     halves.add(light, half);
                 }
             }
         }
+        pieces.finish(dims);
         lights.clear();
         lights.resize(pieces.count, Radiance { transmittance: 1.0, ..Radiance::default() });
     }
@@ -172,6 +172,15 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> simd::Kernel for Flight
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
+        // Shading, between samples, gives one group's reads time to arrive if there is another.
+        if S::SHADES { self.fly::<L, MOST_GROUPS>() } else { self.fly::<L, 1>() }
+    }
+}
+
+impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Flight<'_, '_, V, C, S> {
+    /// Marches the tile, `GROUPS` registers full of rays in turns.
+    #[inline(always)]
+    fn fly<L: Lanes, const GROUPS: usize>(self) {
         let Flight { tile, scratch } = self;
         tile.cut(scratch);
         let Scratch { pieces, lights, halves, visible, .. } = scratch;
@@ -208,8 +217,8 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> simd::Kernel for Flight
     }
 }
 
-/// Registers full of rays that are marched in turns: one does not wait for what the other has in hand.
-const GROUPS: usize = 2;
+/// Most registers full of rays that are marched in turns: one does not wait for what the other has in hand.
+const MOST_GROUPS: usize = 2;
 
 /// As many pieces of rays as a register has lanes, and their light.
 struct Group<L: Lanes> {
@@ -272,27 +281,29 @@ fn put_down<L: Lanes, S: LaneShader>(walk: &Walk<L>, light: &Light<L>, ended: L:
 impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Packets<'_, V, C, S> {
     /// Takes a sample in all lanes that have one.
     #[inline(always)]
-    fn sample<L: Lanes>(&self, groups: &mut [Group<L>; GROUPS], visible: &mut Visible, stop_below: L) {
+    fn sample<L: Lanes, const GROUPS: usize>(
+        &self,
+        groups: &mut [Group<L>; GROUPS],
+        visible: &mut Visible,
+        stop_below: L,
+    ) {
         let mut places = [([L::Ints::splat(0); 3], [L::ZERO; 3]); GROUPS];
-        let mut cells = [const { None }; GROUPS];
         let mut values = [L::ZERO; GROUPS];
         for (g, group) in groups.iter().enumerate() {
             places[g] = group.walk.place();
             let (corner, fraction) = places[g];
-            let at = self.field.cells_at::<L>(corner, fraction);
-            values[g] = self.field.values(&at);
-            cells[g] = Some(at);
+            values[g] = self.field.values(&self.field.cells_at::<L>(corner, fraction));
         }
         for (g, group) in groups.iter_mut().enumerate() {
             let Group { walk, light } = group;
             let active = walk.active();
             walk.advance(active);
-            let Some(cells) = &cells[g] else { continue };
+            let (corner, fraction) = places[g];
             let optics = self.classifier.classify_lanes(
                 values[g],
                 #[inline(always)]
                 || match &self.magnitude {
-                    Some(magnitude) => magnitude.values(cells),
+                    Some(magnitude) => magnitude.values(&self.field.cells_at::<L>(corner, fraction)),
                     None => L::ZERO,
                 },
             );
@@ -311,7 +322,7 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Packets<'_, V, C, S> {
             let share = [red * weight, green * weight, blue * weight];
             if S::SHADES {
                 let [red, green, blue] = share;
-                let (share, (corner, fraction)) = ([red, green, blue, extinction * weight], places[g]);
+                let share = [red, green, blue, extinction * weight];
                 visible.add(lit, &Sample { share, corner, fraction, piece: walk.number() });
             } else {
                 light.add(lit, share);

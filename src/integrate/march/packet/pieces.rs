@@ -41,6 +41,15 @@ pub(super) struct Pieces {
     pub(super) number: [i32; ROOM],
     /// By number, the runs behind the first one: see [`runs`](super::runs).
     pub(super) runs: [i32; ROOM * RUNS],
+    ends: Ends,
+}
+
+/// Of the pieces of a batch, the first and the last sample, continuous indices, and 1 by the number of steps between them, 0 if there
+/// are none.
+struct Ends {
+    first: [[f64; BATCH]; 3],
+    last: [[f64; BATCH]; 3],
+    per_interval: [f64; BATCH],
 }
 
 impl Pieces {
@@ -55,46 +64,71 @@ impl Pieces {
             delta_mm: [0.0; ROOM],
             number: [0; ROOM],
             runs: [0; ROOM * RUNS],
+            ends: Ends { first: [[0.0; BATCH]; 3], last: [[0.0; BATCH]; 3], per_interval: [0.0; BATCH] },
         }
     }
 
-    /// Adds a stretch of a chord through a lattice of `dims` voxels.
+    /// No pieces.
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Adds a stretch of a chord through a lattice of `dims` voxels. Its place and its steps are there after [`Pieces::finish`].
     #[inline(always)]
     pub(super) fn add(&mut self, chord: &Chord, stretch: &Stretch, dims: [usize; 3]) {
         let at = self.count;
-        self.count += 1;
         let first = chord.index_at(stretch.first_mm);
+        let (last, per_interval) = match stretch.samples {
+            0 | 1 => (first, 0.0),
+            samples => (chord.index_at(stretch.last_mm), 1.0 / (samples - 1) as f64),
+        };
+        let Ends { first: firsts, last: lasts, per_interval: all_per_interval } = &mut self.ends;
         for a in 0..3 {
-            let first = fixed(first[a], dims[a]);
-            self.corner[a][at] = (first >> 32) as i32;
-            self.fraction[a][at] = (first as u32 ^ BIAS) as i32;
-            (self.step[a][at], self.step_fraction[a][at]) = (0, 0);
+            firsts[a][at % BATCH] = first[a];
+            lasts[a][at % BATCH] = last[a];
         }
-        if stretch.samples > 1 {
-            let last = chord.index_at(stretch.last_mm);
-            let per_interval = 1.0 / (stretch.samples - 1) as f64;
-            for a in 0..3 {
-                let step = step((fixed(last[a], dims[a]) - fixed(first[a], dims[a])) as f64, per_interval);
-                self.step[a][at] = (step >> 32) as i32;
-                self.step_fraction[a][at] = step as u32 as i32;
-            }
-        }
+        all_per_interval[at % BATCH] = per_interval;
         self.samples[at] = stretch.samples as i32;
         self.delta_mm[at] = stretch.delta_mm as f32;
         self.number[at] = at as i32;
+        self.count += 1;
+        if self.count.is_multiple_of(BATCH) {
+            self.place(self.count - BATCH, dims);
+        }
     }
 
-    /// The corner of the cell of the first sample of the last piece.
+    /// Places those that are not placed yet.
     #[inline(always)]
-    pub(super) fn last_corner(&self) -> [i32; 3] {
-        each(|a| self.corner[a][self.count - 1])
+    pub(super) fn finish(&mut self, dims: [usize; 3]) {
+        let left = self.count % BATCH;
+        if left > 0 {
+            self.place(self.count - left, dims);
+        }
     }
 
-    /// Takes the last piece away.
+    /// Places a batch of pieces. Without branches: compilers fill registers with them.
     #[inline(always)]
-    pub(super) fn take_back(&mut self) {
-        self.count -= 1;
+    fn place(&mut self, from: usize, dims: [usize; 3]) {
+        let Ends { first, last, per_interval } = &self.ends;
+        for a in 0..3 {
+            let (corner, fraction) = (&mut self.corner[a][from..][..BATCH], &mut self.fraction[a][from..][..BATCH]);
+            let (whole, rest) = (&mut self.step[a][from..][..BATCH], &mut self.step_fraction[a][from..][..BATCH]);
+            for k in 0..BATCH {
+                let (first, last) = (fixed(first[a][k], dims[a]), fixed(last[a][k], dims[a]));
+                let step = step((last - first) as f64, per_interval[k]);
+                (corner[k], fraction[k]) = ((first >> 32) as i32, (first as u32 ^ BIAS) as i32);
+                (whole[k], rest[k]) = ((step >> 32) as i32, step as u32 as i32);
+            }
+        }
     }
+}
+
+/// The lower corner of the cell of a stretch's first sample, as [`Pieces::add`] has it.
+#[inline(always)]
+pub(super) fn corner(chord: &Chord, stretch: &Stretch, dims: [usize; 3]) -> [i32; 3] {
+    let first = chord.index_at(stretch.first_mm);
+    each(|a| (first[a] as i32).min(dims[a] as i32 - 2).max(0))
 }
 
 /// A continuous index in units of 2⁻³² voxels, clamped to the cells of an axis of so many voxels; on an axis of one voxel, 0.
@@ -127,8 +161,9 @@ mod tests {
             let to = DVec3::new(699.0 * u(0.271).round(), 299.0 * u(0.828), 0.0);
             let chord = Chord { entry_mm: 3.0, length_mm: 1.0, entry_index: from, index_per_mm: to - from };
             let samples = [1, 2, 3, 977, 65_000][n as usize % 5];
-            pieces.count = 0;
+            pieces.clear();
             pieces.add(&chord, &Stretch { first_mm: 0.0, last_mm: 1.0, samples, delta_mm: 0.5 }, dims);
+            pieces.finish(dims);
             for a in 0..3 {
                 let first = i64::from(pieces.corner[a][0]) << 32 | i64::from(pieces.fraction[a][0] as u32 ^ BIAS);
                 let step = i64::from(pieces.step[a][0]) << 32 | i64::from(pieces.step_fraction[a][0] as u32);

@@ -145,6 +145,7 @@ mod tests {
                 let stretch = Stretch { first_mm: 0.0, last_mm: 1.0, samples: 40_000, delta_mm: 1.0 };
                 pieces.add(&chord, &stretch, [601, 501, 401]);
             }
+            pieces.finish([601, 501, 401]);
             let first = Place::<L>::load(&pieces, 0);
             let (mut stepped, mut steps) = (first, 0);
             for count in self.0 {

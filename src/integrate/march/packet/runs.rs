@@ -206,6 +206,7 @@ mod tests {
             let samples = [1, 90, 700][n % 3];
             pieces.add(&chord, &Stretch { first_mm: 0.0, last_mm: 1.0, samples, delta_mm: 1.0 }, DIMS);
         }
+        pieces.finish(DIMS);
         pieces
     }
 

@@ -3,14 +3,14 @@
 //! How much of a sample's light reaches the eye is known before it is shaded, since shading leaves extinction alone. So gradients are read
 //! where something shows and nowhere else, and what a sample adds comes to its ray in the order in which the ray took its samples.
 
-use super::GROUPS;
+use super::MOST_GROUPS;
 use crate::field::{GradientUnits, Trilinear, Voxel};
 use crate::integrate::shade::LaneShader;
 use crate::integrate::tiles::Radiance;
 use crate::simd::{BATCH, Ints, Joining, Lanes, Mask, Pairs};
 
 /// Registers full of samples, or nearly: a turn fills no more than one of each group, and one more waits.
-const REGISTERS: usize = (GROUPS + 1).next_power_of_two();
+const REGISTERS: usize = (MOST_GROUPS + 1).next_power_of_two();
 
 /// Samples that wait.
 pub(super) struct Visible {
@@ -177,6 +177,7 @@ impl Visible {
         }
     }
 
+    /// Shades the first `count` samples of a register.
     #[inline(always)]
     fn shade_register<L: Lanes, V: Voxel + Pairs, S: LaneShader>(
         &mut self,
@@ -190,7 +191,7 @@ impl Visible {
         let gradients = if <L::Mask as Mask>::ALL.and_not(field.are_inside(&cells)).any() {
             field.gradients_at_border(&cells)
         } else {
-            field.gradients(&cells, &field.lines(&cells))
+            field.gradients(&cells)
         };
         let (reflected, highlight) = scenery.shader.reflect(
             scenery.units.per_mm(gradients),
