@@ -149,7 +149,7 @@ fn gradients_by<V: Pairs, L: Lanes>(
     let [front_a, front_b, behind_c, behind_d] = slabs;
     let ends = each(
         #[inline(always)]
-        |n| ([lines[n][0], lines[n][1]], [lines[n][2], lines[n][3]]),
+        |n| [[lines[n][0], lines[n][1]], [lines[n][2], lines[n][3]]],
     );
     let along_i = across::<V, L>(ends, [times[0]; 4], at);
     let [a, b, c, d] = each(
@@ -157,10 +157,10 @@ fn gradients_by<V: Pairs, L: Lanes>(
         |n| [lines[n][1], lines[n][2]],
     );
     let [near, far] = [[times[1][0]; 2], [times[1][1]; 2]];
-    let along_j = across::<V, L>([(above_a, b), (a, below_b), (above_c, d), (c, below_d)], [near, far, near, far], at);
+    let along_j = across::<V, L>([[above_a, b], [a, below_b], [above_c, d], [c, below_d]], [near, far, near, far], at);
     let [near, far] = [[times[2][0]; 2], [times[2][1]; 2]];
     let along_k =
-        across::<V, L>([(front_a, c), (front_b, d), (a, behind_c), (b, behind_d)], [near, near, far, far], at);
+        across::<V, L>([[front_a, c], [front_b, d], [a, behind_c], [b, behind_d]], [near, near, far, far], at);
     [along_i, along_j, along_k]
 }
 
@@ -172,12 +172,12 @@ fn bilinear<L: Lanes>([a, b, c, d]: [L; 4], [_, v, w]: [L; 3]) -> L {
 
 /// Half the differences of pairs of samples, line by line, `times` their factors, interpolated.
 #[inline(always)]
-fn across<V: Pairs, L: Lanes>(pairs: [([V::Stored<L>; 2], [V::Stored<L>; 2]); 4], times: [[L; 2]; 4], at: [L; 3]) -> L {
+fn across<V: Pairs, L: Lanes>(pairs: [[[V::Stored<L>; 2]; 2]; 4], times: [[L; 2]; 4], at: [L; 3]) -> L {
     let mut ends = [L::ZERO; 2];
     for (x, end) in ends.iter_mut().enumerate() {
         let mut differences = [L::ZERO; 4];
         for n in 0..4 {
-            let (before, after) = pairs[n];
+            let [before, after] = pairs[n];
             differences[n] = V::to_lanes::<L>(after[x] - before[x]) * times[n][x];
         }
         *end = bilinear(differences, at);
