@@ -41,21 +41,25 @@ impl Occupancy {
         occupancy
     }
 
-    /// Joins cubes of `1 << log2_blocks` blocks per axis that are empty all over.
+    /// Joins cubes of `1 << log2_blocks` blocks per axis that are empty all over: those of which the eighths are.
     fn join(&mut self, log2_blocks: u32, log2_cells: u8) {
         let [nx, ny, nz] = self.blocks;
-        let side = 1 << log2_blocks;
+        let (side, half) = (1 << log2_blocks, 1 << (log2_blocks - 1));
         let span = |from: usize, n: usize| from..(from + side).min(n);
         self.empty[..nx * ny * nz].par_chunks_mut(nx * ny * side).for_each(|slab| {
+            let deep = slab.len() / (nx * ny);
             for y in (0..ny).step_by(side) {
                 for x in (0..nx).step_by(side) {
-                    let rows = |slab: &[u8]| {
-                        let deep = slab.len() / (nx * ny);
-                        (0..deep).flat_map(move |k| span(y, ny).map(move |j| nx * (j + ny * k)))
-                    };
                     // What lies beyond the lattice is empty, too.
-                    if rows(slab).all(|row| span(x, nx).all(|i| slab[row + i] + 1 >= log2_cells)) {
-                        rows(slab).for_each(|row| slab[row..][span(x, nx)].fill(log2_cells));
+                    let eighths = |from: usize, n: usize| span(from, n).step_by(half);
+                    let is_empty = |i: usize, j: usize, k: usize| slab[i + nx * (j + ny * k)] + 1 >= log2_cells;
+                    let mut corners = eighths(0, deep).flat_map(|k| eighths(y, ny).map(move |j| (j, k)));
+                    if corners.all(|(j, k)| eighths(x, nx).all(|i| is_empty(i, j, k))) {
+                        for k in 0..deep {
+                            for j in span(y, ny) {
+                                slab[nx * (j + ny * k)..][span(x, nx)].fill(log2_cells);
+                            }
+                        }
                     }
                 }
             }
