@@ -71,13 +71,16 @@ impl Chords {
     #[inline(always)]
     pub fn get(&self, n: usize) -> Option<Chord> {
         let length_mm = self.length_mm[n];
-        let at = |[x, y, z]: &[Vec<f64>; 3]| DVec3::new(x[n], y[n], z[n]);
-        (length_mm > 0.0 && length_mm.is_finite()).then(|| Chord {
-            entry_mm: self.entry_mm[n],
-            length_mm,
-            entry_index: at(&self.entry_index),
-            index_per_mm: at(&self.index_per_mm),
-        })
+        // Not a closure: it would stay a call.
+        if length_mm > 0.0 && length_mm.is_finite() {
+            let [x, y, z] = &self.entry_index;
+            let entry_index = DVec3::new(x[n], y[n], z[n]);
+            let [x, y, z] = &self.index_per_mm;
+            let index_per_mm = DVec3::new(x[n], y[n], z[n]);
+            Some(Chord { entry_mm: self.entry_mm[n], length_mm, entry_index, index_per_mm })
+        } else {
+            None
+        }
     }
 }
 

@@ -95,16 +95,19 @@ impl Pixels {
         (row..row + height).flat_map(move |y| (column..column + width).map(move |x| [x, y]))
     }
 
-    /// All pixels, neighbours together: their numbers, and `[column, row]` of the picture.
-    pub(super) fn neighbours_first(self) -> impl Iterator<Item = (usize, [usize; 2])> {
+    /// Puts down all pixels, neighbours together: their numbers, and `[column, row]` of the picture.
+    pub(super) fn neighbours_first(self, order: &mut Vec<(usize, [usize; 2])>) {
         let Pixels { column, row, width, height } = self;
-        let corners = move |n: usize| (0..n).step_by(NEIGHBOURS);
-        let span = |from: usize, n: usize| from..(from + NEIGHBOURS).min(n);
-        let blocks = corners(height).flat_map(move |top| corners(width).map(move |left| (top, left)));
-        blocks.flat_map(move |(top, left)| {
-            let pixels = span(top, height).flat_map(move |y| span(left, width).map(move |x| (x, y)));
-            pixels.map(move |(x, y)| (x + width * y, [column + x, row + y]))
-        })
+        order.clear();
+        for top in (0..height).step_by(NEIGHBOURS) {
+            for left in (0..width).step_by(NEIGHBOURS) {
+                for y in top..(top + NEIGHBOURS).min(height) {
+                    for x in left..(left + NEIGHBOURS).min(width) {
+                        order.push((x + width * y, [column + x, row + y]));
+                    }
+                }
+            }
+        }
     }
 }
 

@@ -62,6 +62,15 @@ pub fn restrict<R: Number>(b: &Cubic<R>, from: R, to: R) -> Cubic<R> {
     [blossom(b, from, from, from), blossom(b, from, from, to), blossom(b, from, to, to), blossom(b, to, to, to)]
 }
 
+/// The same cubic up to `u` and from there on, each mapped to `[0, 1]`: de Casteljau's scheme.
+#[inline(always)]
+pub fn split<R: Number>(b: &Cubic<R>, u: R) -> [Cubic<R>; 2] {
+    let (p, q, r) = (lerp(b[0], b[1], u), lerp(b[1], b[2], u), lerp(b[2], b[3], u));
+    let (s, t) = (lerp(p, q, u), lerp(q, r, u));
+    let middle = lerp(s, t, u);
+    [[b[0], p, s, middle], [middle, t, r, b[3]]]
+}
+
 /// The trilinear interpolant of eight corner values (x fastest) along the segment from `a` to `b` inside the unit cell: an
 /// exact cubic. A trilinear function is affine in each argument, so its values at the corners of the box spanned by `a` and
 /// `b` are its polar form, and the cubic's coefficients are means of those.
@@ -226,6 +235,11 @@ mod tests {
         for i in 0..=10 {
             let u = f64::from(i) / 10.0;
             assert!((value(&part, u) - value(&cubic, 0.25 + 0.5 * u)).abs() < 1e-14);
+        }
+        for at in [0.0, 0.3, 1.0] {
+            let (halves, parts) = (split(&cubic, at), [restrict(&cubic, 0.0, at), restrict(&cubic, at, 1.0)]);
+            let apart = (0..8).map(|k| (halves[k / 4][k % 4] - parts[k / 4][k % 4]).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-14, "split at {at}: {halves:?}, expected {parts:?}");
         }
     }
 

@@ -153,8 +153,6 @@ pub(crate) trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<O
     fn mul_plus(self, a: Self, b: Self) -> Self;
     /// The smaller one.
     fn min(self, other: Self) -> Self;
-    /// The larger one.
-    fn max(self, other: Self) -> Self;
     /// `self < other`, false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
     /// `self ≤ other`, false for NaN.

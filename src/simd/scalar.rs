@@ -171,10 +171,6 @@ impl Doubles for f64 {
         if other < self { other } else { self }
     }
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        if other > self { other } else { self }
-    }
-    #[inline(always)]
     fn lt(self, other: Self) -> bool {
         self < other
     }

@@ -102,7 +102,6 @@ impl Kernel for Everything {
                 L::from_doubles(d.floor() + e),
                 L::from_doubles(d.mul_plus(e, d)),
                 L::from_doubles(d.min(e)),
-                L::from_doubles(d.max(e)),
                 L::from_doubles(L::Doubles::select(d.lt(e), d * e, e)),
                 L::from_doubles(L::Doubles::select(d.le(e).and_not(less), d, e)),
                 L::from_ints(d.to_ints()),

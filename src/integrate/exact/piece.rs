@@ -43,10 +43,37 @@ pub(super) struct Integral<R> {
 }
 
 impl<L: Lanes> Integral<L> {
+    /// Of nothing.
+    #[inline(always)]
+    pub(super) fn nothing() -> Self {
+        Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO }
+    }
+
+    /// What a piece and the one behind it do.
+    #[inline(always)]
+    pub(super) fn followed_by(&self, next: &Self) -> Self {
+        let transmittance = L::ONE - self.absorbed;
+        Integral {
+            absorbed: transmittance.mul_plus(next.absorbed, self.absorbed),
+            radiance: each(
+                #[inline(always)]
+                |c| transmittance.mul_plus(next.radiance[c], self.radiance[c]),
+            ),
+            error: transmittance.mul_plus(next.error, self.error),
+        }
+    }
+
     /// Makes nothing of some lanes' pieces.
     #[inline(always)]
     pub(super) fn forget(&mut self, lanes: L::Mask) {
-        for number in self.radiance.iter_mut().chain([&mut self.absorbed, &mut self.error]) {
+        self.forget_light(lanes);
+        self.absorbed = L::select(lanes, L::ZERO, self.absorbed);
+    }
+
+    /// Leaves of some lanes' pieces what they absorb.
+    #[inline(always)]
+    pub(super) fn forget_light(&mut self, lanes: L::Mask) {
+        for number in self.radiance.iter_mut().chain([&mut self.error]) {
             *number = L::select(lanes, L::ZERO, *number);
         }
     }

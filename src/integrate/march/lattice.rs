@@ -95,6 +95,19 @@ impl Cuts {
         }
     }
 
+    /// Length of interval `i`.
+    #[inline(always)]
+    fn length_of(&self, i: usize) -> f64 {
+        self.at(i + 1) - self.at(i)
+    }
+
+    /// Samples of intervals `i` to `to`, at their beginnings or in their middles, if all are as long as the first.
+    #[inline(always)]
+    fn of_intervals(&self, rule: SampleRule, i: usize, to: usize) -> Stretch {
+        let place = |i: usize| if rule == SampleRule::Left { self.at(i) } else { 0.5 * (self.at(i) + self.at(i + 1)) };
+        Stretch { first_mm: place(i), last_mm: place(to), samples: to + 1 - i.min(to + 1), delta_mm: self.length_of(i) }
+    }
+
     /// Samples at the ends of whole steps, the first of them even where the ray is shorter.
     pub(super) fn whole_steps(&self) -> Stretch {
         // A sample that rounding puts beyond the exit is still on the border.
@@ -107,47 +120,45 @@ impl Cuts {
     #[inline(always)]
     pub(super) fn stretches(&self, rule: SampleRule, order: Order) -> [Stretch; 4] {
         let n = self.intervals;
-        let length = |i: usize| self.at(i + 1) - self.at(i);
-        let middle = |i: usize| 0.5 * (self.at(i) + self.at(i + 1));
-        let stretch = |first_mm: f64, last_mm: f64, samples: usize, delta_mm: f64| Stretch {
-            first_mm,
-            last_mm,
-            samples,
-            delta_mm,
-        };
         let inner = n.saturating_sub(2);
         if rule == SampleRule::WholeSteps {
             return self.whole_steps().in_order(order);
         }
         let stretches = match rule {
             SampleRule::Left | SampleRule::Midpoint | SampleRule::WholeSteps => {
-                let place = |i: usize| if rule == SampleRule::Left { self.at(i) } else { middle(i) };
-                let one = |i: usize, samples: usize| stretch(place(i), place(i), samples, length(i));
+                let last = self.of_intervals(rule, n - 1, n - 1);
                 if n > 1 && self.first_mm == self.step_mm {
                     // The first interval is as long as the others.
-                    let whole = stretch(place(0), place(n - 2), n - 1, self.step_mm);
-                    let all = [whole, one(n - 1, 1), Stretch::default(), Stretch::default()];
-                    return ordered(all, order);
+                    let whole = Stretch { delta_mm: self.step_mm, ..self.of_intervals(rule, 0, n - 2) };
+                    return ordered([whole, last, Stretch::default(), Stretch::default()], order);
                 }
-                let between = stretch(place(1), place(n.max(2) - 2), inner, self.step_mm);
-                [one(0, 1), between, one(n - 1, usize::from(n > 1)), Stretch::default()]
+                let first = self.of_intervals(rule, 0, 0);
+                let between = self.of_intervals(rule, 1, n.max(2) - 2);
+                let between = Stretch { samples: inner, delta_mm: self.step_mm, ..between };
+                let last = Stretch { samples: usize::from(n > 1), ..last };
+                [first, between, last, Stretch::default()]
             }
             SampleRule::Trapezoid => {
                 // Nodes are the cuts; each closes the interval from the node visited before it.
-                let one = |i: usize, samples: usize, delta: f64| stretch(self.at(i), self.at(i), samples, delta);
+                let at = |i: usize, to: usize, samples: usize, delta_mm: f64| Stretch {
+                    first_mm: self.at(i),
+                    last_mm: self.at(to),
+                    samples,
+                    delta_mm,
+                };
                 let both = usize::from(n > 1);
                 match order {
                     Order::FrontToBack => [
-                        one(0, 1, 0.0),
-                        one(1, both, length(0)),
-                        stretch(self.at(2), self.at(n.max(2) - 1), inner, self.step_mm),
-                        one(n, 1, length(n - 1)),
+                        at(0, 0, 1, 0.0),
+                        at(1, 1, both, self.length_of(0)),
+                        at(2, n.max(2) - 1, inner, self.step_mm),
+                        at(n, n, 1, self.length_of(n - 1)),
                     ],
                     Order::BackToFront => [
-                        one(0, 1, length(0)),
-                        stretch(self.at(1), self.at(n.max(2) - 2), inner, self.step_mm),
-                        one(n - 1, both, length(n - 1)),
-                        one(n, 1, 0.0),
+                        at(0, 0, 1, self.length_of(0)),
+                        at(1, n.max(2) - 2, inner, self.step_mm),
+                        at(n - 1, n - 1, both, self.length_of(n - 1)),
+                        at(n, n, 1, 0.0),
                     ],
                 }
             }

@@ -82,11 +82,6 @@ impl Doubles for F64x8 {
         F64x8(unsafe { [_mm256_min_pd(c, a), _mm256_min_pd(d, b)] })
     }
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        F64x8(unsafe { [_mm256_max_pd(c, a), _mm256_max_pd(d, b)] })
-    }
-    #[inline(always)]
     fn lt(self, other: Self) -> Mask8 {
         let ([a, b], [c, d]) = (self.0, other.0);
         let (low, high) = unsafe { (_mm256_cmp_pd::<_CMP_LT_OQ>(a, c), _mm256_cmp_pd::<_CMP_LT_OQ>(b, d)) };

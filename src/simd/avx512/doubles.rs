@@ -64,11 +64,6 @@ impl Doubles for F64x16 {
         F64x16(unsafe { [_mm512_min_pd(c, a), _mm512_min_pd(d, b)] })
     }
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        F64x16(unsafe { [_mm512_max_pd(c, a), _mm512_max_pd(d, b)] })
-    }
-    #[inline(always)]
     fn lt(self, other: Self) -> Mask16 {
         let ([a, b], [c, d]) = (self.0, other.0);
         let (low, high) = unsafe { (_mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, c), _mm512_cmp_pd_mask::<_CMP_LT_OQ>(b, d)) };

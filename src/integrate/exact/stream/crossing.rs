@@ -112,7 +112,7 @@ impl<L: Lanes, const F: usize> Crossing<L, F> {
             length_mm: L::ZERO,
             from: L::ONE,
             transmittance: L::ONE,
-            total: Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO },
+            total: Integral::nothing(),
             variance: L::ZERO,
             pieces: L::ZERO,
             is_seated: L::ONE.lt(L::ZERO),

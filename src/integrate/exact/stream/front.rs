@@ -22,7 +22,7 @@ pub(super) struct Fronts {
     variance: [f64; RAYS],
     pieces: [f32; RAYS],
     /// Bound on what is left of a ray that ended before it left the volume.
-    rest: [f64; RAYS],
+    rest: [f32; RAYS],
     /// 1 for a ray that goes on, 0 for one that has ended and for an empty seat.
     goes_on: [i32; RAYS],
 }
@@ -95,7 +95,7 @@ impl Fronts {
     #[inline(always)]
     pub(super) fn take(&mut self, seat: usize) -> Traced {
         self.goes_on[seat] = 0;
-        self.get(seat).ended(self.rest[seat])
+        self.get(seat).ended(f64::from(self.rest[seat]))
     }
 
     /// Composites what cells do onto their rays, step by step. `again` integrates the cell of a ray again, by its seat and its
@@ -124,16 +124,16 @@ impl Fronts {
         walks: &Walks,
         again: &mut impl FnMut(usize, usize, &mut Front),
     ) {
-        let splat = L::Doubles::splat;
+        let splat = L::from_f64;
         let [by_absorption, by_length] = Budget::of_pieces(self.tolerance);
         let by_absorption = splat(by_absorption);
-        let by_length_per_mm = splat(by_length) * L::Doubles::load(&walks.per_lengths_mm()[first..]);
+        let by_length_per_mm = splat(by_length) * from_doubles(&walks.per_lengths_mm()[first..]);
         let most = splat(self.most_at_end);
         let (per_absorbed, per_mm) = (splat(self.brightest.per_absorbed), splat(self.brightest.per_mm));
-        let length_mm = L::Doubles::load(&walks.lengths_mm()[first..]);
+        let length_mm: L = from_doubles(&walks.lengths_mm()[first..]);
         let nothing = L::Ints::splat(0);
         let mut goes_on = nothing.lt(L::Ints::load(&self.goes_on[first..]));
-        let mut sums = Sums::<L>::load(self, first);
+        let mut sums = Sums::<L>::new(self, first);
         for slot in (first..first + STEPS * RAYS).step_by(RAYS) {
             let pieces = L::load(&results.pieces[slot..]);
             let shows = goes_on.and(L::ZERO.lt(pieces));
@@ -141,88 +141,111 @@ impl Fronts {
                 continue;
             }
             let [red, green, blue, absorbed] = L::load_vectors(&results.light[slot..]);
-            let error = L::load(&results.error[slot..]);
-            let exit_mm = L::load(&passed.exit_mm[slot..]).to_doubles();
-            let t = sums.transmittance;
-            let absorbed = t * absorbed.to_doubles();
-            let next = t - absorbed;
-            let error = t * error.to_doubles();
-            let allowed = by_absorption * (splat(1.0) - next) + by_length_per_mm * exit_mm;
+            let exit_mm = L::load(&passed.exit_mm[slot..]);
+            let t = L::ONE - sums.opacity;
+            let opacity = t.mul_plus(absorbed, sums.opacity);
+            let transmittance = sums.before * (L::ONE - opacity);
+            let error = sums.before * t * L::load(&results.error[slot..]);
+            let allowed = by_absorption.mul_plus(L::ONE - transmittance, by_length_per_mm * exit_mm);
             // Nor does NaN fit.
             let fits = shows.and(error.le(allowed - sums.spent));
             for (c, radiance) in [red, green, blue].into_iter().enumerate() {
-                let more = sums.radiance[c] + t * radiance.to_doubles();
-                sums.radiance[c] = L::Doubles::select(fits, more, sums.radiance[c]);
+                let more = t.mul_plus(radiance, sums.radiance[c]);
+                sums.radiance[c] = L::select(fits, more, sums.radiance[c]);
             }
-            sums.transmittance = L::Doubles::select(fits, next, t);
-            sums.opacity = L::Doubles::select(fits, sums.opacity + absorbed, sums.opacity);
-            sums.spent = L::Doubles::select(fits, sums.spent + error, sums.spent);
+            sums.opacity = L::select(fits, opacity, sums.opacity);
+            sums.spent = L::select(fits, sums.spent + error, sums.spent);
             if are_estimated {
-                let variance = t * t * L::load(&results.variance[slot..]).to_doubles();
-                sums.variance = L::Doubles::select(fits, sums.variance + variance, sums.variance);
+                let t = sums.before * t;
+                let variance = (t * t).mul_plus(L::load(&results.variance[slot..]), sums.variance);
+                sums.variance = L::select(fits, variance, sums.variance);
             }
             sums.pieces = L::select(fits, sums.pieces + pieces, sums.pieces);
             let fails = shows.and_not(fits);
             if fails.any() {
-                sums.store(self, first);
+                sums.add_to(self, first, fails);
                 for lane in (0..L::LANES).filter(|lane| fails.bits() >> lane & 1 == 1) {
                     let mut light = self.get(first + lane);
                     again(first + lane, slot + lane, &mut light);
                     self.set(first + lane, &light);
                 }
-                sums = Sums::load(self, first);
+                sums.begin_again(self, first, fails);
             }
-            let is_faint = shows.and(sums.transmittance.le(most));
+            let transmittance = sums.before * (L::ONE - sums.opacity);
+            let is_faint = shows.and(transmittance.le(most));
             if is_faint.any() {
                 // What the rest of each ray may bring at most.
-                let rest = per_absorbed.min(per_mm * (length_mm - exit_mm)).max(splat(1.0));
-                let rest = sums.transmittance * rest;
+                let rest = per_absorbed.min(per_mm * (length_mm - exit_mm)).max(L::ONE);
+                let rest = transmittance * rest;
                 let ends = is_faint.and((sums.spent + rest).le(most));
-                sums.rest = L::Doubles::select(ends, rest, sums.rest);
+                L::select(ends, rest, L::load(&self.rest[first..])).store(&mut self.rest[first..]);
                 goes_on = goes_on.and_not(ends);
             }
         }
-        sums.store(self, first);
+        sums.add_to(self, first, <L::Mask as Mask>::ALL);
         L::Ints::select(goes_on, L::Ints::splat(1), nothing).store(&mut self.goes_on[first..]);
     }
 }
 
-/// The sums of as many rays as a register has lanes.
+/// What cells of a round add to the light of as many rays as a register has lanes, in f32: of a round's few cells, rounding is
+/// that of the cells themselves. What all rounds add up to is kept in f64.
 struct Sums<L: Lanes> {
-    radiance: [L::Doubles; 3],
-    transmittance: L::Doubles,
-    opacity: L::Doubles,
-    spent: L::Doubles,
-    variance: L::Doubles,
+    /// Transmittance before these cells.
+    before: L,
+    /// As if that were 1. What is left of it follows from the opacity, which has all its digits however small it is.
+    radiance: [L; 3],
+    opacity: L,
+    /// Of all the ray.
+    spent: L,
+    variance: L,
     pieces: L,
-    rest: L::Doubles,
 }
 
 impl<L: Lanes> Sums<L> {
+    /// Of no cells.
     #[inline(always)]
-    fn load(fronts: &Fronts, first: usize) -> Self {
-        let [r, g, b] = &fronts.radiance;
+    fn new(fronts: &Fronts, first: usize) -> Self {
         Sums {
-            radiance: [L::Doubles::load(&r[first..]), L::Doubles::load(&g[first..]), L::Doubles::load(&b[first..])],
-            transmittance: L::Doubles::load(&fronts.transmittance[first..]),
-            opacity: L::Doubles::load(&fronts.opacity[first..]),
-            spent: L::Doubles::load(&fronts.spent[first..]),
-            variance: L::Doubles::load(&fronts.variance[first..]),
+            before: from_doubles(&fronts.transmittance[first..]),
+            radiance: [L::ZERO; 3],
+            opacity: L::ZERO,
+            spent: from_doubles(&fronts.spent[first..]),
+            variance: from_doubles(&fronts.variance[first..]),
             pieces: L::load(&fronts.pieces[first..]),
-            rest: L::Doubles::load(&fronts.rest[first..]),
         }
     }
 
+    /// Adds them to the light of the rays of some lanes.
     #[inline(always)]
-    fn store(&self, fronts: &mut Fronts, first: usize) {
-        for c in 0..3 {
-            self.radiance[c].store(&mut fronts.radiance[c][first..]);
+    fn add_to(&self, fronts: &mut Fronts, first: usize, lanes: L::Mask) {
+        let before = L::Doubles::load(&fronts.transmittance[first..]);
+        let sums = self.radiance.into_iter().zip(&mut fronts.radiance);
+        for (sum, all) in sums.chain([(self.opacity, &mut fronts.opacity)]) {
+            let all = &mut all[first..];
+            let so_far = L::Doubles::load(all);
+            L::Doubles::select(lanes, before.mul_plus(sum.to_doubles(), so_far), so_far).store(all);
         }
-        self.transmittance.store(&mut fronts.transmittance[first..]);
-        self.opacity.store(&mut fronts.opacity[first..]);
-        self.spent.store(&mut fronts.spent[first..]);
-        self.variance.store(&mut fronts.variance[first..]);
+        let after = before * (L::Doubles::splat(1.0) - self.opacity.to_doubles());
+        L::Doubles::select(lanes, after, before).store(&mut fronts.transmittance[first..]);
+        self.spent.to_doubles().store(&mut fronts.spent[first..]);
+        self.variance.to_doubles().store(&mut fronts.variance[first..]);
         self.pieces.store(&mut fronts.pieces[first..]);
-        self.rest.store(&mut fronts.rest[first..]);
     }
+
+    /// Forgets those of some lanes, whose rays have been passed on.
+    #[inline(always)]
+    fn begin_again(&mut self, fronts: &Fronts, first: usize, lanes: L::Mask) {
+        let mut again = Sums::new(fronts, first);
+        for c in 0..3 {
+            again.radiance[c] = L::select(lanes, L::ZERO, self.radiance[c]);
+        }
+        again.opacity = L::select(lanes, L::ZERO, self.opacity);
+        *self = again;
+    }
+}
+
+/// The nearest f32 to the first numbers of a slice.
+#[inline(always)]
+fn from_doubles<L: Lanes>(numbers: &[f64]) -> L {
+    L::from_doubles(L::Doubles::load(numbers))
 }

@@ -23,17 +23,17 @@ pub(in crate::integrate::exact) trait Function<const F: usize>: Sync {
     /// In which lanes nothing absorbs or emits for all fields in intervals from `first` to `last`.
     fn is_empty<L: Lanes>(&self, first: [L::Ints; F], last: [L::Ints; F]) -> L::Mask;
 
-    /// For each field's range of values: the interval of its lower end, in which lanes all fields stay in theirs, and in which
-    /// nothing absorbs or emits.
+    /// The intervals that the fields' ranges of values reach.
     #[inline(always)]
-    fn intervals<L: Lanes>(&self, ranges: &[[L; 2]; F]) -> ([L::Ints; F], L::Mask, L::Mask) {
+    fn intervals<L: Lanes>(&self, ranges: &[[L; 2]; F]) -> Intervals<L, F> {
         let (mut first, mut last) = ([L::Ints::splat(0); F], [L::Ints::splat(0); F]);
-        let mut stay = <L::Mask as Mask>::ALL;
+        let mut knots = L::Ints::splat(0);
         for f in 0..F {
             [first[f], last[f]] = self.axis(f).intervals_of(ranges[f]);
-            stay = stay.and(first[f].eq(last[f]));
+            knots = knots + (last[f] - first[f]);
         }
-        (first, stay, self.is_empty::<L>(first, last))
+        let (no, one) = (knots.eq(L::Ints::splat(0)), knots.eq(L::Ints::splat(1)));
+        Intervals { first, stay: no, one_knot: one, are_empty: self.is_empty::<L>(first, last) }
     }
 
     /// The integral over a piece on which each field stays in one interval.
@@ -44,6 +44,17 @@ pub(in crate::integrate::exact) trait Function<const F: usize>: Sync {
         length_mm: L,
         finish: &impl Finish<L>,
     ) -> Integral<L>;
+}
+
+/// Where ranges of fields lie on their axes.
+pub(in crate::integrate::exact) struct Intervals<L: Lanes, const F: usize> {
+    /// The interval of each range's lower end.
+    pub(super) first: [L::Ints; F],
+    /// In which lanes no range reaches beyond that, and in which one reaches beyond one knot.
+    pub(super) stay: L::Mask,
+    pub(super) one_knot: L::Mask,
+    /// In which nothing absorbs or emits.
+    pub(super) are_empty: L::Mask,
 }
 
 /// A function of the value alone.
@@ -139,15 +150,18 @@ impl Function<1> for OfValue {
     }
 
     #[inline(always)]
-    fn intervals<L: Lanes>(&self, &[[low, high]]: &[[L; 2]; 1]) -> ([L::Ints; 1], L::Mask, L::Mask) {
+    fn intervals<L: Lanes>(&self, &[[low, high]]: &[[L; 2]; 1]) -> Intervals<L, 1> {
         let first = self.axis.interval(low);
-        let stays = high.lt(self.axis.end(first + L::Ints::splat(1)));
-        let is_empty = if self.has_gaps {
+        let [next, second]: [L::Mask; 2] = each(
+            #[inline(always)]
+            |n| high.lt(self.axis.end(first + L::Ints::splat(1 + n as i32))),
+        );
+        let are_empty = if self.has_gaps {
             self.is_empty::<L>([first], [self.axis.interval(high)])
         } else {
             self.is_dark(low, high)
         };
-        ([first], stays, is_empty)
+        Intervals { first: [first], stay: next, one_knot: second.and_not(next), are_empty }
     }
 
     #[inline(always)]

@@ -167,8 +167,7 @@ struct Sum<L> {
 impl<L: Lanes> Sum<L> {
     #[inline(always)]
     fn new() -> Self {
-        let total = Integral { absorbed: L::ZERO, radiance: [L::ZERO; 3], error: L::ZERO };
-        Sum { total, transmittance: L::ONE, pieces: L::ZERO }
+        Sum { total: Integral::nothing(), transmittance: L::ONE, pieces: L::ZERO }
     }
 
     /// Passes the part between two cuts, in pieces as long as their errors allow. Says which lanes do not get on.

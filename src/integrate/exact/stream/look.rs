@@ -1,7 +1,7 @@
 //! From cells to cubics: reads corners, drops cells in which nothing shows, and sets apart those that cross a knot.
 
 use super::axis::Axis;
-use super::function::Function;
+use super::function::{Function, Intervals};
 use super::queue::{Passed, Results, Shown, Way};
 use super::voxels::{Corners, Voxels, magnitudes};
 use super::walk::{AHEAD, Cells, Lines, RAYS};
@@ -56,9 +56,9 @@ impl Fields<2> for Read {
     }
 }
 
-/// Looks into the cells that rays pass at several steps, the first lane's slot at the first step being `first`. Those whose fields
-/// stay in one interval go to `whole`, and `results` are told of them; those that may cross a knot go to `cut`. `corners` is room
-/// for samples.
+/// Looks into the cells that rays pass at several steps, the first lane's slot at the first step being `first`. Those of which the
+/// pieces are known go to `whole` and `halved`, and `results` are told of them; others that may cross knots go to `cut`.
+/// `corners` is room for samples.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "what is read, what with, and where it goes")]
 pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
@@ -71,6 +71,7 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
     is_lit: bool,
     passed: &mut Passed,
     whole: &mut Shown<F>,
+    halved: &mut Shown<F>,
     cut: &mut Shown<F>,
     results: &mut Results,
 ) where
@@ -93,11 +94,11 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
         let at = Corners { cell: lines.cell(cells), base: cells.base };
         let (from, to) = (lines.coordinates(cells, cells.from_mm), lines.coordinates(cells, cells.to_mm));
         let fields = <Read as Fields<F>>::along(voxels, &at, corners, from, to);
-        let (intervals, stays, is_empty) = function.intervals(&each(
+        let Intervals { first: interval, stay, one_knot, are_empty } = function.intervals(&each(
             #[inline(always)]
             |f| all_of(function.axis(f), &fields[f]),
         ));
-        let shows = may_show[n].and_not(is_empty);
+        let shows = may_show[n].and_not(are_empty);
         if !shows.any() {
             continue;
         }
@@ -109,12 +110,22 @@ pub(super) fn look<L: Lanes, V: Voxel + Pairs, const F: usize>(
         if is_lit {
             let are_inner = voxels.are_inner::<L>(&at.cell, shows);
             whole.are_inner &= are_inner;
+            halved.are_inner &= are_inner;
             cut.are_inner &= are_inner;
         }
-        let is_whole = shows.and(stays);
-        results.expect::<L>(slot, is_whole);
-        whole.append(is_whole, slots, &fields, Some(&intervals), length_mm, way.as_ref());
-        cut.append(shows.and_not(stays), slots, &fields, None, length_mm, way.as_ref());
+        let is_whole = shows.and(stay);
+        let mut is_halved = shows.and(one_knot);
+        for f in 0..F {
+            // Where rounding might misplace a cut, it is looked into.
+            if function.axis(f).steep().is_some() {
+                is_halved = shows.and_not(shows);
+            }
+        }
+        let pieces = L::select(is_whole, L::ONE, L::select(is_halved, L::from_f64(2.0), L::ZERO));
+        results.expect(slot, pieces);
+        whole.append(is_whole, slots, &fields, Some(&interval), length_mm, way.as_ref());
+        halved.append(is_halved, slots, &fields, Some(&interval), length_mm, way.as_ref());
+        cut.append(shows.and_not(is_whole.or(is_halved)), slots, &fields, None, length_mm, way.as_ref());
     }
 }
 

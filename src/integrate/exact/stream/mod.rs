@@ -16,6 +16,7 @@ mod axis;
 mod crossing;
 mod front;
 mod function;
+mod known;
 mod levels;
 mod light;
 mod lit;
@@ -50,6 +51,7 @@ use crate::volume::Grid;
 use arrivals::Arrivals;
 use crossing::Beginnings;
 use front::Fronts;
+use known::{Halved, Whole};
 use light::Seen;
 use lit::{Allowance, Scenery, lit};
 use look::look;
@@ -121,8 +123,9 @@ where
 struct Scratch<const F: usize> {
     chords: Chords,
     passed: Passed,
-    /// Cells whose fields stay in one interval, and those that may cross a knot.
+    /// Cells whose fields stay in one interval, those that cross one knot, and others that may cross some.
     whole: Shown<F>,
+    halved: Shown<F>,
     cut: Shown<F>,
     beginnings: Beginnings<F>,
     gradients: shaded::Gradients,
@@ -137,6 +140,7 @@ impl<const F: usize> Scratch<F> {
             chords: Chords::default(),
             passed: Passed::new(),
             whole: Shown::new(),
+            halved: Shown::new(),
             cut: Shown::new(),
             beginnings: Beginnings::new(),
             gradients: [[[0.0; ROOM]; 4]; 3],
@@ -167,7 +171,8 @@ where
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Rounds { stream, rays, ended, scratch } = self;
-        let Scratch { chords, passed, whole, cut, beginnings, gradients, unfinished, results, splits } = scratch;
+        let Scratch { chords, passed, whole, halved, cut, beginnings, gradients, unfinished, results, splits } =
+            scratch;
         chords.of(stream.grid, stream.clip, rays);
         let mut arrivals = Arrivals::new(stream.grid, chords, rays);
         let mut walks = Walks::<RAYS>::new(stream.voxels.dims());
@@ -212,6 +217,7 @@ where
             }
             results.clear();
             whole.clear();
+            halved.clear();
             cut.clear();
             walks.pass::<L>(
                 &stream.occupancy,
@@ -227,6 +233,7 @@ where
                         stream.lighting.is_some(),
                         passed,
                         whole,
+                        halved,
                         cut,
                         results,
                     )
@@ -241,18 +248,22 @@ where
                 let (voxels, seen, allowance) = (&stream.voxels, &seen, &allowance);
                 let scenery = Scenery { voxels, lighting, seen, allowance, harm_per_mm };
                 if stream.estimate.is_none() {
-                    lit::<L, V, F>(whole, &stream.function, &scenery, results);
-                    lit::<L, V, F>(cut, &stream.function, &scenery, results);
+                    for shown in [&whole, &halved, &cut] {
+                        lit::<L, V, F>(shown, &stream.function, &scenery, results);
+                    }
                 } else {
                     let scenery = shaded::Scenery::<V> { voxels, lighting, seen, allowance, harm_per_mm };
                     let function = &stream.function;
-                    shaded::whole::<L, V, F>(whole, function, &scenery, unfinished, results);
+                    shaded::known::<L, V, Whole, F, 1>(whole, function, &scenery, cut, unfinished, results);
+                    shaded::known::<L, V, Halved, F, 2>(halved, function, &scenery, cut, unfinished, results);
                     shaded::cut::<L, V, F>(cut, function, &scenery, beginnings, gradients, unfinished, results);
                     shaded::halved::<L, V, F>(function, &scenery, unfinished, results);
                 }
             } else {
-                pieces::whole::<L, F>(whole, &stream.function, &allowed, cut, results);
-                pieces::cut::<L, F>(cut, &stream.function, harm_per_mm, &allowed, beginnings, results);
+                let function = &stream.function;
+                pieces::known::<L, Whole, F, 1>(whole, function, &allowed, cut, results);
+                pieces::known::<L, Halved, F, 2>(halved, function, &allowed, cut, results);
+                pieces::cut::<L, F>(cut, function, harm_per_mm, &allowed, beginnings, results);
             }
             fronts.composite::<L>(passed, results, stream.estimate.is_some(), &walks, |seat, slot, light| {
                 let Some((_, direction)) = seated[seat] else { unreachable!("cells belong to rays") };

@@ -107,19 +107,18 @@ impl<const F: usize> Parts<F> {
     }
 
     /// Moves all pieces of others behind these.
-    pub(super) fn take(&mut self, others: &mut Parts<F>) {
-        let (at, count) = (self.count, others.count);
-        if at + count + BATCH > self.slot.len() {
-            self.grow(at + count + BATCH);
+    #[inline(always)]
+    pub(super) fn take<L: Lanes>(&mut self, others: &mut Parts<F>) {
+        for first in (0..others.count).step_by(L::LANES) {
+            self.append(others.are_parts::<L>(first), &others.load::<L>(first));
         }
-        for (row, other) in self.floats().zip(others.floats()) {
-            row[at..at + count].copy_from_slice(&other[..count]);
-        }
-        for (row, other) in self.ints().zip(others.ints()) {
-            row[at..at + count].copy_from_slice(&other[..count]);
-        }
-        self.count += count;
         others.count = 0;
+    }
+
+    /// Which lanes have pieces, from one on.
+    #[inline(always)]
+    pub(super) fn are_parts<L: Lanes>(&self, first: usize) -> L::Mask {
+        (L::Ints::count() + L::Ints::splat(first as i32)).lt(L::Ints::splat(self.count as i32))
     }
 
     /// As many as a register has lanes, or as there are.

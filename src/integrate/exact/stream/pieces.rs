@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::crossing::{Beginnings, Crossing, Taken};
 use super::function::Function;
+use super::known::Find;
 use super::levels::{Between, critical_points, crossing};
 use super::light::AsItIs;
 use super::look::ROUNDINGS;
@@ -36,9 +37,9 @@ impl Allowed {
     }
 }
 
-/// Integrates cells whose fields stay in their intervals. Those of which one piece is not enough go to `cut`.
+/// Integrates cells of which the pieces are known. Those of which these are not enough go to `cut`.
 #[inline(always)]
-pub(super) fn whole<L: Lanes, const F: usize>(
+pub(super) fn known<L: Lanes, P: Find<F, N>, const F: usize, const N: usize>(
     shown: &Shown<F>,
     function: &impl Function<F>,
     allowed: &Allowed,
@@ -46,16 +47,20 @@ pub(super) fn whole<L: Lanes, const F: usize>(
     results: &mut Results,
 ) {
     for first in (0..shown.count).step_by(L::LANES) {
-        let fields = load_fields::<L, F>(shown, first);
-        let mut interval = [L::Ints::splat(0); F];
-        for f in 0..F {
-            interval[f] = L::Ints::load(&shown.interval[f][first..]);
-        }
+        let (is_cell, fields) = (shown.are_cells::<L>(first), load_fields::<L, F>(shown, first));
         let length_mm = L::load(&shown.length_mm[first..]);
-        let integral = function.integrate(interval, &fields, length_mm, &AsItIs);
-        put(results, shown, first, &integral, None, None);
-        let refused = shown.are_cells::<L>(first).and_not(integral.error.le(allowed.of(&integral, length_mm)));
-        cut.append(refused, L::Ints::load(&shown.slot[first..]), &fields, None, length_mm, None);
+        let known = P::find(function, fields, load_intervals::<L, F>(shown, first), is_cell);
+        let mut fits = known.are_known;
+        let mut total = Integral::nothing();
+        for n in 0..N {
+            let [from, to] = known.ends[n];
+            let piece_mm = length_mm * (to - from);
+            let piece = function.integrate(known.interval[n], &known.fields[n], piece_mm, &AsItIs);
+            fits = fits.and(piece.error.le(allowed.of(&piece, piece_mm)));
+            total = if n == 0 { piece } else { total.followed_by(&piece) };
+        }
+        put(results, shown, first, &total, None, None);
+        cut.append(is_cell.and_not(fits), L::Ints::load(&shown.slot[first..]), &fields, None, length_mm, None);
     }
 }
 
@@ -122,6 +127,14 @@ pub(super) fn load_fields<L: Lanes, const F: usize>(shown: &Shown<F>, first: usi
                 |k| L::load(&shown.fields[f][k][first..]),
             )
         },
+    )
+}
+
+#[inline(always)]
+pub(super) fn load_intervals<L: Lanes, const F: usize>(shown: &Shown<F>, first: usize) -> [L::Ints; F] {
+    each(
+        #[inline(always)]
+        |f| L::Ints::load(&shown.interval[f][first..]),
     )
 }
 

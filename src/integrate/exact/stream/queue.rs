@@ -34,7 +34,7 @@ pub(super) struct Shown<const F: usize> {
     /// Which of the cells passed.
     pub(super) slot: [i32; ROOM],
     pub(super) fields: [[[f32; ROOM]; 4]; F],
-    /// The interval of each field, where it does not change along the cell.
+    /// The interval of each field's lower end, where the cell's pieces are known.
     pub(super) interval: [[i32; ROOM]; F],
     /// Length, mm.
     pub(super) length_mm: [f32; ROOM],
@@ -169,10 +169,10 @@ impl Results {
         Results { light: [[0.0; 4]; CELLS], error: [0.0; CELLS], variance: [0.0; CELLS], pieces: [0.0; CELLS] }
     }
 
-    /// From a slot on, the chosen cells will have one piece each.
+    /// From a slot on, cells will have so many pieces.
     #[inline(always)]
-    pub(super) fn expect<L: Lanes>(&mut self, slot: usize, chosen: L::Mask) {
-        L::select(chosen, L::ONE, L::ZERO).store(&mut self.pieces[slot..]);
+    pub(super) fn expect<L: Lanes>(&mut self, slot: usize, pieces: L) {
+        pieces.store(&mut self.pieces[slot..]);
     }
 
     /// Sets those of some lanes' cells, which are in these slots. How many pieces they have has been said where it is not given.

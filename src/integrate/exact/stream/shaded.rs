@@ -4,11 +4,12 @@
 
 use super::crossing::{Beginnings, Crossing};
 use super::function::Function;
+use super::known::Find;
 use super::light::{Lighting, Lights, Seen};
 use super::lit::Allowance;
 use super::nodes::AtNodes;
 use super::parts::{Part, Parts};
-use super::pieces::{load_fields, put};
+use super::pieces::{load_fields, load_intervals, put};
 use super::queue::{ROOM, Results, Shown, Way};
 use super::voxels::Voxels;
 use crate::field::Voxel;
@@ -143,54 +144,54 @@ impl<const F: usize> Waiting<F> {
     }
 }
 
-/// Integrates cells whose fields stay in their intervals.
+/// Integrates cells of which the pieces are known. Those that turn out to have more go to `cut`.
 #[inline(always)]
-pub(super) fn whole<L: Lanes, V: Voxel + Pairs, const F: usize>(
+pub(super) fn known<L: Lanes, V: Voxel + Pairs, P: Find<F, N>, const F: usize, const N: usize>(
     shown: &Shown<F>,
     function: &impl Function<F>,
     scenery: &Scenery<'_, '_, V>,
+    cut: &mut Shown<F>,
     waiting: &mut Waiting<F>,
     results: &mut Results,
 ) {
     for first in (0..shown.count).step_by(L::LANES) {
-        let is_cell = shown.are_cells::<L>(first);
-        let fields = load_fields::<L, F>(shown, first);
-        let mut interval = [L::Ints::splat(0); F];
-        for f in 0..F {
-            interval[f] = L::Ints::load(&shown.interval[f][first..]);
-        }
+        let (is_cell, fields) = (shown.are_cells::<L>(first), load_fields::<L, F>(shown, first));
         let length_mm = L::load(&shown.length_mm[first..]);
+        let known = P::find(function, fields, load_intervals::<L, F>(shown, first), is_cell);
         let seat = shown.seats::<L>(first);
-        let sight = scenery.sight::<L>(&shown.way.load(first), shown.are_inner, seat);
-        let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, [L::ZERO, L::ONE]);
-        let mut integral = function.integrate(interval, &fields, length_mm, &light);
-        let missed = scenery.missed(&light, &integral);
-        let allowed = sight.may_miss(integral.absorbed);
-        let refused = is_cell.and_not(missed.le(allowed).and(scenery.allows(sight.error_per_mm, &integral, length_mm)));
-        let mut missed = missed;
-        if refused.any() {
-            let part = Part {
-                slot: L::Ints::load(&shown.slot[first..]),
-                seat,
-                fields: each(
+        let (slot, way) = (L::Ints::load(&shown.slot[first..]), shown.way.load(first));
+        let has_more = is_cell.and_not(known.are_known);
+        if has_more.any() {
+            cut.are_inner &= shown.are_inner;
+            cut.append(has_more, slot, &fields, None, length_mm, Some(&way));
+        }
+        let sight = scenery.sight::<L>(&way, shown.are_inner, seat);
+        let (mut total, mut variance) = (Integral::nothing(), L::ZERO);
+        for n in 0..N {
+            let (interval, ends) = (known.interval[n], known.ends[n]);
+            let light = scenery.lighting.at_nodes(&sight.gradient, &sight.lights, ends);
+            let piece_mm = length_mm * (ends[1] - ends[0]);
+            let mut piece = function.integrate(interval, &known.fields[n], piece_mm, &light);
+            let transmittance = L::ONE - total.absorbed;
+            let mut missed = transmittance * scenery.missed(&light, &piece);
+            let allowed = sight.may_miss(transmittance * piece.absorbed);
+            let keeps = missed.le(allowed).and(scenery.allows(sight.error_per_mm, &piece, piece_mm));
+            let refused = known.are_known.and_not(keeps);
+            if refused.any() {
+                let fields = each(
                     #[inline(always)]
                     |f| powers::of(&fields[f]),
-                ),
-                interval,
-                gradient: sight.gradient,
-                length_mm,
-                ends: [L::ZERO, L::ONE],
-                transmittance: L::ONE,
-                allowed,
-            };
-            waiting.parts.append(refused, &part);
-            for radiance in &mut integral.radiance {
-                *radiance = L::select(refused, L::ZERO, *radiance);
+                );
+                let gradient = sight.gradient;
+                let part = Part { slot, seat, fields, interval, gradient, length_mm, ends, transmittance, allowed };
+                waiting.parts.append(refused, &part);
+                piece.forget_light(refused);
+                missed = L::select(refused, L::ZERO, missed);
             }
-            missed = L::select(refused, L::ZERO, missed);
-            integral.error = L::select(refused, L::ZERO, integral.error);
+            total = if n == 0 { piece } else { total.followed_by(&piece) };
+            variance = missed.mul_plus(missed, variance);
         }
-        put(results, shown, first, &integral, Some(missed * missed), None);
+        put(results, shown, first, &total, Some(variance), None);
     }
 }
 
@@ -279,7 +280,7 @@ pub(super) fn halved<L: Lanes, V: Voxel + Pairs, const F: usize>(
     while parts.count() > 0 {
         for first in (0..parts.count()).step_by(L::LANES) {
             let part = parts.load::<L>(first);
-            let is_part = (L::Ints::count() + splat::<L>(first)).lt(splat::<L>(parts.count()));
+            let is_part = parts.are_parts::<L>(first);
             let [start, end] = part.ends;
             let middle = L::from_f64(0.5) * (start + end);
             let is_small = (middle - start).le(L::from_f64(SMALLEST_PIECE));
@@ -324,11 +325,9 @@ pub(super) fn halved<L: Lanes, V: Voxel + Pairs, const F: usize>(
             }
         }
         parts.clear();
-        for halves in &mut *halves {
-            if halves.count() > 0 {
-                parts.take(halves);
-            }
-        }
+        let [first_halves, second_halves] = halves;
+        std::mem::swap(parts, first_halves);
+        parts.take::<L>(second_halves);
     }
 }
 

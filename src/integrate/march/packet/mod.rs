@@ -131,8 +131,7 @@ impl<V: Voxel + Pairs, C: LaneClassifier, S: LaneShader> Tile<'_, '_, V, C, S> {
     #[inline(always)]
     fn cut(&self, scratch: &mut Scratch) {
         let Scratch { order, rays, chords, pieces, lights, met, halves, .. } = scratch;
-        order.clear();
-        self.pixels.neighbours_first().for_each(|pixel| order.push(pixel));
+        self.pixels.neighbours_first(order);
         rays.through(&self.frame.scene.camera, order.iter().map(|&(_, pixel)| pixel));
         let (grid, dims) = (self.frame.volume.grid(), self.kernel.field.dims());
         chords.of(grid, &self.frame.scene.effects.clip, rays);
