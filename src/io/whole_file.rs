@@ -5,15 +5,13 @@
 //! as it was.
 
 use std::error::Error as StdError;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+
+use tempfile::{Builder, TempPath};
 
 use crate::error::{Error, Fault, Result};
-
-/// Distinguishes the temporary files of one process.
-static COUNTER: AtomicU32 = AtomicU32::new(0);
 
 /// Writes the file at `path` by `body`, whole or not at all.
 ///
@@ -34,57 +32,37 @@ where
             .at(path)
             .remedy("give the name of a file"));
     }
-    let (mut writer, mut temporary) = Temporary::create(&target).map_err(|error| failed(error.into()))?;
+    // From here on, a failure drops the temporary file, which removes it.
+    let (mut writer, temporary) = temporary_beside(&target).map_err(|error| failed(error.into()))?;
     body(&mut writer).map_err(|error| failed(error.into()))?;
-    finish(writer, &mut temporary, &target).map_err(|error| failed(error.into()))
+    finish(writer, temporary, &target).map_err(|error| failed(error.into()))
 }
 
 /// Flushes to the disk, closes, and gives the file its name.
-fn finish(mut writer: BufWriter<File>, temporary: &mut Temporary, target: &Path) -> io::Result<()> {
+fn finish(mut writer: BufWriter<File>, temporary: TempPath, target: &Path) -> io::Result<()> {
     writer.flush()?;
     writer.get_ref().sync_all()?;
     drop(writer);
-    fs::rename(&temporary.path, target)?;
-    temporary.renamed = true;
+    temporary.persist(target)?;
     // The new name is on the disk once its folder is. Not every system can do that, and the file is whole either way.
-    if let Some(Ok(folder)) = folder_of(target).map(File::open) {
+    if let Ok(folder) = File::open(folder_of(target)) {
         let _ = folder.sync_all();
     }
     Ok(())
 }
 
-fn folder_of(path: &Path) -> Option<&Path> {
-    path.parent().map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
+/// A new file in the folder of `target`.
+fn temporary_beside(target: &Path) -> io::Result<(BufWriter<File>, TempPath)> {
+    let name = target.file_name().ok_or_else(|| io::Error::other("the path does not name a file"))?;
+    let prefix = format!(".{}.", name.to_string_lossy());
+    // Made here, since what the library makes is for its owner alone.
+    let make = |path: &Path| File::options().write(true).create_new(true).open(path);
+    let (file, path) = Builder::new().prefix(&prefix).suffix(".partial").make_in(folder_of(target), make)?.into_parts();
+    Ok((BufWriter::new(file), path))
 }
 
-/// A file under its temporary name; removed unless it was renamed.
-struct Temporary {
-    path: PathBuf,
-    renamed: bool,
-}
-
-impl Temporary {
-    fn create(target: &Path) -> io::Result<(BufWriter<File>, Self)> {
-        let name = target.file_name().ok_or_else(|| io::Error::other("the path does not name a file"))?;
-        loop {
-            let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-            let own = format!(".{}.{}-{number}.partial", name.to_string_lossy(), std::process::id());
-            let path = target.with_file_name(own);
-            match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(file) => return Ok((BufWriter::new(file), Temporary { path, renamed: false })),
-                // Left behind by a process of the same number that was killed.
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(error),
-            }
-        }
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        if !self.renamed {
-            // Nothing better can be done if this fails too; the name says what the file is.
-            let _ = fs::remove_file(&self.path);
-        }
-    }
+/// The folder that a path lies in.
+pub(super) fn folder_of(path: &Path) -> PathBuf {
+    let folder = path.parent().unwrap_or(path);
+    if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_path_buf() }
 }

@@ -2,12 +2,15 @@
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use tempfile::Builder;
 
 use super::ct_image::SeriesAttributes;
 use super::decimal_string::exact;
 use super::uid::Seed;
 use crate::error::{Error, Fault, Result};
+use crate::io::whole_file::folder_of;
 use crate::volume::{Quantity, Rescale, Samples, Slices, Volume};
 
 /// Cosine of the angle between rows and columns above which a lattice is sheared in the plane of its slices.
@@ -169,28 +172,16 @@ fn whole_folder<T>(dir: &Path, write: impl FnOnce(&Path) -> Result<T>) -> Result
             .at(dir)
             .remedy("choose another folder: slices of two series must not mix"));
     }
-    let part = temporary_name(dir);
-    if let Some(parent) = part.parent() {
-        fs::create_dir_all(parent).map_err(failed)?;
-    }
-    fs::create_dir(&part).map_err(failed)?;
-    let written = write(&part).and_then(|result| {
-        if dir.exists() {
-            fs::remove_dir(dir).map_err(failed)?; // Empty, as was seen above; anything else is an error here.
-        }
-        fs::rename(&part, dir).map_err(failed)?;
-        Ok(result)
-    });
-    if written.is_err()
-        && let Err(error) = fs::remove_dir_all(&part)
-    {
-        tracing::warn!(path = %part.display(), %error, "a half-written folder is left behind");
-    }
-    written
-}
-
-/// Hidden, in the same parent folder, so that the renaming stays on one file system.
-fn temporary_name(dir: &Path) -> PathBuf {
+    let parent = folder_of(dir);
+    fs::create_dir_all(&parent).map_err(failed)?;
     let name = dir.file_name().unwrap_or_default().to_string_lossy();
-    dir.with_file_name(format!(".{name}.part-{}", std::process::id()))
+    // In the same folder, so that the renaming stays on one file system; dropped, it is removed.
+    let part = Builder::new().prefix(&format!(".{name}.")).suffix(".partial").tempdir_in(parent).map_err(failed)?;
+    let result = write(part.path())?;
+    if dir.exists() {
+        fs::remove_dir(dir).map_err(failed)?; // Empty, as was seen above; anything else is an error here.
+    }
+    fs::rename(part.path(), dir).map_err(failed)?;
+    let _ = part.keep();
+    Ok(result)
 }

@@ -30,16 +30,10 @@ pub(super) struct Walks<const N: usize = RAYS> {
     /// mm per voxel, and where each would cross face 0 across each axis, mm; 0 and [`NEVER_MM`] where it does not move.
     pub(super) mm_per: [[f64; N]; 3],
     pub(super) face_zero_mm: [[f64; N]; 3],
-    /// The coordinate in a cell of the lattice, in `[0, 1]`, where it is left through the next face, and what it is less per mm
-    /// before that.
+    /// The coordinate in a cell of the lattice, in `[0, 1]`, where it is left through the next face.
     pub(super) leaves_at: [[f32; N]; 3],
-    pub(super) less_per_mm: [[f32; N]; 3],
     /// -1 where a ray falls, 0 where it rises.
     pub(super) falls: [[i32; N]; 3],
-    /// The last cell before the border.
-    pub(super) last_cell: [[i32; N]; 3],
-    /// From a cell to the next in memory.
-    pub(super) strides: [[i32; N]; 3],
     /// Length inside the volume.
     pub(super) exit_mm: [f64; N],
     /// 1 over that, 1/mm.
@@ -63,10 +57,7 @@ impl<const N: usize> Walks<N> {
             mm_per: [[0.0; N]; 3],
             face_zero_mm: [[0.0; N]; 3],
             leaves_at: [[0.0; N]; 3],
-            less_per_mm: [[0.0; N]; 3],
             falls: [[0; N]; 3],
-            last_cell: [[0; N]; 3],
-            strides: [[0; N]; 3],
             exit_mm: [0.0; N],
             per_length_mm: [0.0; N],
             at_mm: [0.0; N],
@@ -77,25 +68,35 @@ impl<const N: usize> Walks<N> {
         }
     }
 
+    /// The last cell before the border along an axis.
+    #[inline(always)]
+    pub(super) fn last_cell(&self, a: usize) -> i32 {
+        self.dims[a] - 2
+    }
+
+    /// From a cell to the next along each axis in memory.
+    #[inline(always)]
+    pub(super) fn strides(&self) -> [i32; 3] {
+        let [nx, ny, _] = self.dims;
+        [1, nx, nx * ny]
+    }
+
     /// Seats a ray where it enters the volume.
     #[inline(always)]
     pub(super) fn enter(&mut self, seat: usize, chord: &Chord) {
         self.at_mm[seat] = 0.0;
         self.base[seat] = 0;
-        let [nx, ny, _] = self.dims;
         let mut exit_mm = chord.length_mm;
-        for (a, stride) in [1, nx, nx * ny].into_iter().enumerate() {
+        for (a, stride) in self.strides().into_iter().enumerate() {
             let (p, d) = (chord.entry_index[a], chord.index_per_mm[a]);
             let falls = d < 0.0;
             // On a face, the cell that the ray is about to pass; at the border, the one inside.
             let cell = if falls { p.ceil() - 1.0 } else { p.floor() };
-            let cell = (cell as i32).clamp(0, self.dims[a] - 2);
+            let cell = (cell as i32).clamp(0, self.last_cell(a));
             self.base[seat] += stride * cell;
-            let (rising, last_cell) = if falls { (-1 - cell, -1) } else { (cell, self.dims[a] - 2) };
+            let (rising, last_cell) = if falls { (-1 - cell, -1) } else { (cell, self.last_cell(a)) };
             self.cell[a][seat] = rising;
-            self.last_cell[a][seat] = last_cell;
             self.falls[a][seat] = -i32::from(falls);
-            self.strides[a][seat] = if falls { -stride } else { stride };
             let p = if falls { -p } else { p };
             self.entry[a][seat] = p;
             if d.abs() * chord.length_mm < STILL {
@@ -103,14 +104,12 @@ impl<const N: usize> Walks<N> {
                 self.mm_per[a][seat] = 0.0;
                 self.face_zero_mm[a][seat] = NEVER_MM;
                 self.leaves_at[a][seat] = (p.abs() - f64::from(cell)) as f32;
-                self.less_per_mm[a][seat] = 0.0;
             } else {
                 self.per_mm[a][seat] = d.abs();
                 self.mm_per[a][seat] = 1.0 / d.abs();
                 self.face_zero_mm[a][seat] = -p * self.mm_per[a][seat];
                 self.entry[a][seat] = p + NUDGE;
                 self.leaves_at[a][seat] = if falls { 0.0 } else { 1.0 };
-                self.less_per_mm[a][seat] = d as f32;
                 // No ray steps over the border, whatever rounding does.
                 exit_mm = exit_mm.min(self.crossing_mm(seat, a, last_cell + 1));
             }
@@ -128,10 +127,7 @@ impl<const N: usize> Walks<N> {
             self.mm_per[a][seat] = others.mm_per[a][from];
             self.face_zero_mm[a][seat] = others.face_zero_mm[a][from];
             self.leaves_at[a][seat] = others.leaves_at[a][from];
-            self.less_per_mm[a][seat] = others.less_per_mm[a][from];
             self.falls[a][seat] = others.falls[a][from];
-            self.last_cell[a][seat] = others.last_cell[a][from];
-            self.strides[a][seat] = others.strides[a][from];
             self.cell[a][seat] = others.cell[a][from];
         }
         self.exit_mm[seat] = others.exit_mm[from];

@@ -167,17 +167,19 @@ impl<L: Lanes> Lines<L> {
             strides: [nothing; 3],
             exit_mm: L::Doubles::load(&walks.exit_mm[first..]),
         };
-        for a in 0..3 {
+        for (a, stride) in walks.strides().into_iter().enumerate() {
+            let falls = L::Ints::load(&walks.falls[a][first..]).lt(nothing);
             lines.entry[a] = L::Doubles::load(&walks.entry[a][first..]);
             lines.per_mm[a] = L::Doubles::load(&walks.per_mm[a][first..]);
             lines.mm_per[a] = L::Doubles::load(&walks.mm_per[a][first..]);
             lines.face_zero_mm[a] = L::Doubles::load(&walks.face_zero_mm[a][first..]);
             lines.mm_per_face[a] = L::from_doubles(lines.mm_per[a]);
             lines.leaves_at[a] = L::load(&walks.leaves_at[a][first..]);
-            lines.less_per_mm[a] = L::load(&walks.less_per_mm[a][first..]);
-            lines.falls[a] = L::Ints::load(&walks.falls[a][first..]).lt(nothing);
-            lines.last_cell[a] = L::Ints::load(&walks.last_cell[a][first..]);
-            lines.strides[a] = L::Ints::load(&walks.strides[a][first..]);
+            let per_mm = L::from_doubles(lines.per_mm[a]);
+            lines.less_per_mm[a] = L::select(falls, -per_mm, per_mm);
+            lines.falls[a] = falls;
+            lines.last_cell[a] = L::Ints::select(falls, L::Ints::splat(-1), L::Ints::splat(walks.last_cell(a)));
+            lines.strides[a] = L::Ints::select(falls, L::Ints::splat(-stride), L::Ints::splat(stride));
         }
         lines
     }
