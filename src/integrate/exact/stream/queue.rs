@@ -185,32 +185,32 @@ impl Results {
         variance: Option<L>,
         pieces: Option<L>,
     ) {
-        let [r, g, b] = integral.radiance;
-        let mut light = [[0.0; 4]; BATCH];
-        // Summed over pieces, it may be more by a rounding.
-        L::store_vectors([r, g, b, integral.absorbed.min(L::ONE)], &mut light);
-        let mut error = [0.0; BATCH];
-        integral.error.store(&mut error);
-        let (mut variances, mut counts) = ([0.0; BATCH], [0.0; BATCH]);
-        if let Some(variance) = variance {
-            variance.store(&mut variances);
-        }
-        if let Some(pieces) = pieces {
-            pieces.store(&mut counts);
-        }
+        let of_lanes = OfLanes::new(integral, variance, pieces);
         let mut left = lanes.bits();
+        // As most are: nothing to look for, and nothing to wait for.
+        if left == <L::Mask as Mask>::ALL.bits() {
+            for (k, &slot) in slots[..L::LANES].iter().enumerate() {
+                self.set(slot, &of_lanes, k);
+            }
+            return;
+        }
         while left != 0 {
             let k = left.trailing_zeros() as usize % BATCH;
             left &= left - 1;
-            let slot = slots[k] as usize % CELLS;
-            self.light[slot] = light[k];
-            self.error[slot] = error[k];
-            if variance.is_some() {
-                self.variance[slot] = variances[k];
-            }
-            if pieces.is_some() {
-                self.pieces[slot] = counts[k];
-            }
+            self.set(slots[k], &of_lanes, k);
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, slot: i32, of_lanes: &OfLanes, k: usize) {
+        let slot = slot as usize % CELLS;
+        self.light[slot] = of_lanes.light[k];
+        self.error[slot] = of_lanes.error[k];
+        if let Some(variance) = &of_lanes.variance {
+            self.variance[slot] = variance[k];
+        }
+        if let Some(pieces) = &of_lanes.pieces {
+            self.pieces[slot] = pieces[k];
         }
     }
 
@@ -218,4 +218,30 @@ impl Results {
     pub(super) fn clear(&mut self) {
         self.pieces.fill(0.0);
     }
+}
+
+/// What the cells in a register's lanes do to light, as [`Results`] keep it.
+struct OfLanes {
+    light: [[f32; 4]; BATCH],
+    error: [f32; BATCH],
+    variance: Option<[f32; BATCH]>,
+    pieces: Option<[f32; BATCH]>,
+}
+
+impl OfLanes {
+    #[inline(always)]
+    fn new<L: Lanes>(integral: &Integral<L>, variance: Option<L>, pieces: Option<L>) -> Self {
+        let [r, g, b] = integral.radiance;
+        let mut light = [[0.0; 4]; BATCH];
+        // Summed over pieces, it may be more by a rounding.
+        L::store_vectors([r, g, b, integral.absorbed.min(L::ONE)], &mut light);
+        OfLanes { light, error: stored(integral.error), variance: variance.map(stored), pieces: pieces.map(stored) }
+    }
+}
+
+#[inline(always)]
+fn stored<L: Lanes>(x: L) -> [f32; BATCH] {
+    let mut numbers = [0.0; BATCH];
+    x.store(&mut numbers);
+    numbers
 }
