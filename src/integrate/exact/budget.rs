@@ -2,8 +2,8 @@
 
 /// Shares of the tolerance: pieces by what they absorb, pieces by their length, the rest of a ray that is cut short,
 /// and rounding.
-const BY_ABSORPTION: f64 = 0.75;
-const BY_LENGTH: f64 = 0.1;
+const BY_ABSORPTION: f64 = 0.85;
+const BY_LENGTH: f64 = 0.05;
 const PIECES_AND_REST: f64 = 0.95;
 
 /// The error account of one ray.

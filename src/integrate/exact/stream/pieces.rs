@@ -17,6 +17,10 @@ use crate::simd::{Ints, Lanes, Mask, Table};
 /// A piece is not made shorter than this fraction of a cell; what it then costs the ray's budget may refuse.
 const SMALLEST_PIECE: f64 = 1.0 / 256.0;
 
+/// What a piece may cost is its share of the ray's account times this. Most pieces leave nearly all of theirs unspent, so the account,
+/// which `front` keeps, hardly ever refuses a piece that takes more.
+const OVERDRAFT: f64 = 1.4;
+
 /// What the error of a piece may be: a share of what it absorbs, and one of its length.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Allowed {
@@ -27,7 +31,7 @@ pub(super) struct Allowed {
 impl Allowed {
     /// For rays of at most `longest_mm`; `by_absorption` and `by_length` are shares of a tolerance.
     pub(super) fn new([by_absorption, by_length]: [f64; 2], longest_mm: f64) -> Self {
-        Allowed { by_absorption, per_mm: by_length / longest_mm }
+        Allowed { by_absorption: OVERDRAFT * by_absorption, per_mm: by_length / longest_mm }
     }
 
     /// What a piece may cost.
